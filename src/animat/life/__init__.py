@@ -1,0 +1,1 @@
+"""One step, one life, many lives, and what is recorded of them."""

@@ -1,0 +1,1 @@
+"""Homeostasis, drives, selection of behaviour and affordance networks."""

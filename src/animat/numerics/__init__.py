@@ -1,0 +1,1 @@
+"""Random streams and elementary functions: the ground everything stands on."""

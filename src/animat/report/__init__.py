@@ -1,0 +1,1 @@
+"""Survival statistics, verdicts, figures and the page."""

@@ -1,0 +1,1 @@
+"""The Khepera: geometry, infrared sensors, motion and collision."""

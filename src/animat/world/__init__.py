@@ -1,0 +1,1 @@
+"""Object types, layouts and the rasterised arena."""
