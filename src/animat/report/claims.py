@@ -1,0 +1,274 @@
+"""The paper's claims C1 to C7, and whether they hold here.
+
+A verdict comes from a confidence interval and from nothing else: *holds* if the whole interval
+says so, *fails* if the whole interval says the opposite, *undecided* if it says both.
+"""
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+
+from animat.report.estimates import RESAMPLES, Estimate, bootstrapped, ratio_of_means, share
+from animat.report.lives import cell, column, restricted, restriction
+
+Verdict = Literal["holds", "fails", "undecided"]
+
+ABUNDANT_GAIN = (1.75, 2.25)
+"""C4: "nearly 100 %" is a gain nearer to 100 % than to 50 % or 150 %, so 75 % to 125 %."""
+
+SCARCE_GAIN = (1.25, 1.75)
+"""C5: "nearly 50 %" is a gain nearer to 50 % than to nothing or to 100 %, so 25 % to 75 %."""
+
+AFFORDED = 0.8
+"""C7: a network knows that an object affords an act from this likelihood on."""
+
+NOT_AFFORDED = 0.2
+"""C7: a network knows that an object does not afford an act up to this likelihood."""
+
+LEARNERS = 0.9
+"""C7: affordances "can be learnt" if more than nine robots in ten learn all of them: the paper
+shows one robot, and a single success means little if every tenth or more would have failed."""
+
+INTERACT = "interact"
+
+_ORDER: tuple[Verdict, ...] = ("fails", "undecided", "holds")
+
+
+class Part(NamedTuple):
+    """One of several numbers behind a claim."""
+
+    label: str
+    ours: float
+    low: float
+    high: float
+    verdict: Verdict
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A claim of the paper, our number with its interval, the verdict and how it came about."""
+
+    id: str
+    text: str
+    paper: str
+    ours: float
+    low: float
+    high: float
+    verdict: Verdict
+    how: str
+    parts: tuple[Part, ...] = ()
+
+
+def above(estimate: Estimate, bound: float) -> Verdict:
+    """Does the quantity exceed `bound`? Undecided while the interval touches it."""
+    if estimate.low > bound:
+        return "holds"
+    return "fails" if estimate.high < bound else "undecided"
+
+
+def inside(estimate: Estimate, band: tuple[float, float]) -> Verdict:
+    """Does the quantity lie in the closed `band`?"""
+    if estimate.low >= band[0] and estimate.high <= band[1]:
+        return "holds"
+    return "fails" if estimate.high < band[0] or estimate.low > band[1] else "undecided"
+
+
+def judge_lifespans(
+    lives: pa.Table,
+    *,
+    abundant: str = "abundant",
+    scarce: str = "scarce",
+    blind: str = "BLIND",
+    informed: str = "AF",
+    seed: int = 0,
+    resamples: int = RESAMPLES,
+) -> list[Claim]:
+    """C1 to C6 from a table of lives with the four cells of Experiment 2.
+
+    The names say which worlds and agents the cells are. Raises ValueError if a cell is missing.
+    """
+
+    def lives_of(world: str, agent: str) -> pa.Table:
+        return cell(lives, world=world, agent=agent)
+
+    rich_blind, rich_informed = lives_of(abundant, blind), lives_of(abundant, informed)
+    poor_blind, poor_informed = lives_of(scarce, blind), lives_of(scarce, informed)
+    rich, rich_how = _ratio(rich_informed, rich_blind, seed, resamples)
+    poor, poor_how = _ratio(poor_informed, poor_blind, seed, resamples)
+    gain, gain_how = _difference_of_gains(
+        [rich_informed, rich_blind, poor_informed, poor_blind], seed, resamples
+    )
+    return [
+        Claim(
+            "C1",
+            f"{informed} outlives {blind} in the abundant world",
+            "ratio > 1",
+            *rich,
+            above(rich, 1.0),
+            f"ratio of mean lifespans {informed}/{blind} above 1; {rich_how}",
+        ),
+        Claim(
+            "C2",
+            f"{informed} outlives {blind} in the scarce world",
+            "ratio > 1",
+            *poor,
+            above(poor, 1.0),
+            f"ratio of mean lifespans {informed}/{blind} above 1; {poor_how}",
+        ),
+        _worlds(
+            {blind: (rich_blind, poor_blind), informed: (rich_informed, poor_informed)},
+            seed,
+            resamples,
+        ),
+        _magnitude("C4", "abundant", "nearly 100 %", rich, ABUNDANT_GAIN, rich_how),
+        _magnitude("C5", "scarce", "nearly 50 %", poor, SCARCE_GAIN, poor_how),
+        Claim(
+            "C6",
+            "the gain in the abundant world exceeds the gain in the scarce world",
+            "2 − 1.5 = 0.5 > 0",
+            *gain,
+            above(gain, 0.0),
+            f"difference of the two ratios {informed}/{blind} above 0; {gain_how}",
+        ),
+    ]
+
+
+def judge_learning(likelihoods: pa.Table) -> Claim:
+    """C7 from the likelihoods at the end of Experiment 1.
+
+    `likelihoods` has the columns `seed`, `network` (name of its behaviour), `object` (type),
+    `likelihood` and `afforded` (Table 1's probability; from 0.5 on the object affords the act).
+    A seed counts if every network is right about every object type. Raises ValueError if a seed
+    lacks one, or the table is empty.
+    """
+    seeds = column(likelihoods, "seed")
+    network = column(likelihoods, "network")
+    kind = column(likelihoods, "object")
+    likelihood = column(likelihoods, "likelihood").astype(np.float64)
+    afforded = (column(likelihoods, "afforded") >= 0.5) | (network == INTERACT)
+    pairs = list(dict.fromkeys(zip(network.tolist(), kind.tolist(), strict=True)))
+    each, rows = np.unique(seeds, return_counts=True)
+    if not each.size:
+        raise ValueError("the table of likelihoods is empty")
+    triples = set(zip(seeds.tolist(), network.tolist(), kind.tolist(), strict=True))
+    if np.any(rows != len(pairs)) or len(triples) != len(seeds):
+        raise ValueError("every seed needs one likelihood for each network and object type")
+    right = np.where(afforded, likelihood >= AFFORDED, likelihood <= NOT_AFFORDED)
+    learnt = sum(bool(right[seeds == seed].all()) for seed in each)
+    result = share(learnt, each.size)
+    return Claim(
+        "C7",
+        "the networks learn what each object affords",
+        "likelihood close to 1 where afforded, else close to 0",
+        *result,
+        above(result, LEARNERS),
+        f"share of {each.size} robots whose networks all say ≥ {AFFORDED} where afforded and "
+        f"≤ {NOT_AFFORDED} where not, against {LEARNERS}; Wilson interval",
+        tuple(_known(name, thing, (network == name) & (kind == thing), likelihood, right)
+              for name, thing in pairs),
+    )  # fmt: skip
+
+
+def judge(lives: pa.Table, likelihoods: pa.Table, **settings) -> list[Claim]:
+    """All seven claims; `settings` as in `judge_lifespans`."""
+    return [*judge_lifespans(lives, **settings), judge_learning(likelihoods)]
+
+
+def claims_json(claims: Sequence[Claim]) -> str:
+    """The claims as JSON text; a number that is not finite becomes null."""
+
+    def plain(value):
+        if isinstance(value, dict):
+            return {key: plain(entry) for key, entry in value.items()}
+        if isinstance(value, list | tuple):
+            return [plain(entry) for entry in value]
+        return None if isinstance(value, float) and not math.isfinite(value) else value
+
+    records = []
+    for claim in claims:
+        record = asdict(claim)
+        record["parts"] = [part._asdict() for part in claim.parts]
+        records.append(plain(record))
+    return json.dumps(records, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _ratio(
+    above_line: pa.Table, below_line: pa.Table, seed: int, resamples: int
+) -> tuple[Estimate, str]:
+    (top, bottom), paired = restricted([above_line, below_line])
+    estimate = ratio_of_means(top, bottom, paired=paired, seed=seed, resamples=resamples)
+    return estimate, _how([above_line, below_line], paired)
+
+
+def _difference_of_gains(tables: list[pa.Table], seed: int, resamples: int) -> tuple[Estimate, str]:
+    spans, paired = restricted(tables)
+
+    def difference(a, b, c, d, axis=-1):
+        a, b, c, d = (np.mean(sample, axis=axis) for sample in (a, b, c, d))
+        return a / b - c / d
+
+    estimate = bootstrapped(spans, difference, paired=paired, seed=seed, resamples=resamples)
+    return estimate, _how(tables, paired)
+
+
+def _how(tables: list[pa.Table], paired: bool) -> str:
+    words = f"{'paired' if paired else 'unpaired'} bootstrap over lives"
+    cap = restriction(tables)
+    if math.isfinite(cap):
+        alive = sum(int(column(table, "censored").sum()) for table in tables)
+        total = sum(table.num_rows for table in tables)
+        words += f", means restricted at {cap:,.0f} steps ({alive} of {total} lives went on)"
+    return words
+
+
+def _worlds(agents: dict[str, tuple[pa.Table, pa.Table]], seed: int, resamples: int) -> Claim:
+    parts = []
+    hows = []
+    for agent, (rich, poor) in agents.items():
+        estimate, how = _ratio(rich, poor, seed, resamples)
+        parts.append(Part(agent, *estimate, above(estimate, 1.0)))
+        hows.append(f"{agent} {estimate.value:.2f}, {parts[-1].verdict} ({how})")
+    worst = min(parts, key=lambda part: (_ORDER.index(part.verdict), part.low))
+    return Claim(
+        "C3",
+        "agents live longer in the abundant world than in the scarce one",
+        "ratio > 1, both agents",
+        worst.ours,
+        worst.low,
+        worst.high,
+        worst.verdict,
+        "ratio of mean lifespans abundant/scarce above 1 for both agents, shown for the one that "
+        f"decides ({worst.label}): " + "; ".join(hows),
+        tuple(parts),
+    )
+
+
+def _magnitude(
+    name: str, world: str, words: str, estimate: Estimate, band: tuple[float, float], how: str
+) -> Claim:
+    return Claim(
+        name,
+        f"knowing affordances lengthens life by {words} in the {world} world",
+        f"ratio ≈ {sum(band) / 2:g}",
+        *estimate,
+        inside(estimate, band),
+        f"ratio of mean lifespans within {band[0]} to {band[1]}; {how}",
+    )
+
+
+def _known(network: str, thing: str, rows, likelihood, right) -> Part:
+    """Mean likelihood over seeds with its range from minimum to maximum, and who is right."""
+    values = likelihood[rows]
+    learners = share(int(right[rows].sum()), int(rows.sum()))
+    return Part(
+        f"{network} {thing}",
+        float(values.mean()),
+        float(values.min()),
+        float(values.max()),
+        above(learners, LEARNERS),
+    )
