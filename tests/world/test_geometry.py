@@ -62,8 +62,8 @@ def test_packing_turns_anticlockwise_then_shifts(seed, angle):
     turned = polygons[0] @ np.array(
         [[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]]
     )
-    np.testing.assert_allclose(outlines.outline[:5], turned + (100, 200), atol=1e-9)
-    np.testing.assert_array_equal(outlines.outline[5:], polygons[1] + (-30, 40))
+    np.testing.assert_allclose(outlines.outline[:5], turned + np.array([100, 200]), atol=1e-9)
+    np.testing.assert_array_equal(outlines.outline[5:], polygons[1] + np.array([-30, 40]))
     np.testing.assert_array_equal(outlines.first, [0, 5, 8])
     np.testing.assert_array_equal(outlines.centre, poses[:, :2])
     np.testing.assert_allclose(outlines.reach[0], np.linalg.norm(polygons[0], axis=1).max())

@@ -28,6 +28,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -105,6 +106,8 @@ def write_world(path: Path, name: str, layout: Layout, resolution: float) -> Non
         partial.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
         partial.replace(path)
     except OSError as error:
+        with suppress(OSError):
+            partial.unlink()
         raise WorldError([f"{path}: cannot be written: {error.strerror}"]) from None
 
 

@@ -149,7 +149,7 @@ def _place_problems(layout: Layout) -> list[str]:
     found = _wall_problems(layout, names, outlines)
     pairs = np.empty((_MOST_PAIRS, 2), dtype=np.int64)
     gaps = np.empty(_MOST_PAIRS, dtype=np.float64)
-    narrow = narrow_pairs(outlines, layout.minimum_gap, pairs, gaps)
+    narrow = narrow_pairs(outlines, float(layout.minimum_gap), pairs, gaps)
     for (a, b), gap in zip(pairs[:narrow].tolist(), gaps.tolist(), strict=False):
         if gap <= TOUCHING:
             found.append(f"{names[a]} overlaps {names[b]}; move one of them")

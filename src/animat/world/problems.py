@@ -22,7 +22,7 @@ def nearest_name(name: str, known: Iterable[str]) -> str:
     """Return '; nearest: X' for the known name most like `name`, or '' when none is like it."""
     names = list(known)
     by_folded = {known_name.casefold(): known_name for known_name in reversed(names)}
-    close = difflib.get_close_matches(name.casefold(), by_folded, n=1, cutoff=0.5)
+    close = difflib.get_close_matches(name.casefold(), by_folded, n=1, cutoff=0.6)
     return f"; nearest: {by_folded[close[0]]}" if close else ""
 
 
