@@ -57,7 +57,7 @@ def test_long_values_are_shortened():
 
 @pytest.mark.parametrize(
     ("name", "nearest"),
-    [("ts", "; nearest: TS"), ("TSS", "; nearest: TS"), ("circle", ""), ("cl", "; nearest: CL")],
+    [("ts", "; nearest: TS"), ("TSS", "; nearest: TS"), ("circle", ""), ("ST", "; nearest: TS")],
 )
 def test_the_nearest_name_is_told_only_when_one_is_near(name, nearest):
     assert nearest_name(name, ["TS", "TL", "CS", "CL"]) == nearest

@@ -20,9 +20,12 @@ class WorldError(ValueError):
 
 def nearest_name(name: str, known: Iterable[str]) -> str:
     """Return '; nearest: X' for the known name most like `name`, or '' when none is like it."""
-    names = list(known)
-    by_folded = {known_name.casefold(): known_name for known_name in reversed(names)}
-    close = difflib.get_close_matches(name.casefold(), by_folded, n=1, cutoff=0.6)
+    folded = name.casefold()
+    by_folded = {known_name.casefold(): known_name for known_name in reversed(list(known))}
+    close = difflib.get_close_matches(folded, by_folded, n=1)
+    if not close:
+        # Two letters swapped make short names look unlike: ST for TS.
+        close = [other for other in by_folded if sorted(other) == sorted(folded)]
     return f"; nearest: {by_folded[close[0]]}" if close else ""
 
 
