@@ -1,0 +1,223 @@
+"""What pydantic found wrong, in a user's words: one line for each mistake.
+
+Pydantic says where a mistake is by a path that also names the branches of a union it tried. The
+path is followed through the annotations of the model, so that the user sees only keys that can be
+written, is told which keys or choices there are, and is told once of a value no branch accepts.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+KINDS = {
+    "float_type": "must be a number",
+    "float_parsing": "must be a number",
+    "int_type": "must be a whole number",
+    "int_parsing": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "bool_type": "must be true or false",
+    "bool_parsing": "must be true or false",
+    "string_type": "must be a string",
+    "callable_type": "must be a function",
+    "dict_type": "must be a table",
+    "model_type": "must be a table",
+    "model_attributes_type": "must be a table",
+    "list_type": "must be a list",
+    "tuple_type": "must be a list",
+    "finite_number": "must be a finite number",
+}
+
+LONGEST_VALUE = 60
+"""Characters of a value that are worth repeating."""
+
+CLOSE_ENOUGH = 0.6
+"""The similarity (difflib's ratio) from which a name is taken for a misspelling."""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Return '; did you mean "x"?' for the known name most like `name`, else '; known: ...'."""
+    names = [str(each) for each in known]
+    close = _closest(name, names)
+    if close is not None:
+        return f'; did you mean "{close}"?'
+    return f"; known: {', '.join(names)}" if names else ""
+
+
+def mistakes(error: ValidationError, model: type[BaseModel]) -> list[str]:
+    """Return a line for every mistake, `key a.b[0] = VALUE: what is wrong with it`."""
+    found = [_found(detail, model) for detail in error.errors(include_url=False)]
+    lines = [line for mistake in _without_other_branches(found) for line in mistake.lines()]
+    return list(dict.fromkeys(lines))
+
+
+class _Mistake(NamedTuple):
+    key: tuple[str | int, ...]
+    union: tuple[str | int, ...] | None  # the key of the outermost union on the way, if any
+    branch: str | int | None  # which of its branches this mistake belongs to
+    value: str
+    message: str
+
+    def lines(self) -> list[str]:
+        """Return a line for each mistake that a validator of ours reported together."""
+        name = f"key {_written(self.key)}{self.value}: " if self.key else ""
+        return [name + line for line in self.message.splitlines()]
+
+
+def _found(detail: ErrorDetails, model: type[BaseModel]) -> _Mistake:
+    here: Any = model
+    key: list[str | int] = []
+    union = branch = None
+    of_key = False
+    holder: Any = None
+    for part in detail["loc"]:
+        options = _options(here)
+        if part == "[key]":
+            of_key = True
+            here = _argument(holder, 0)
+        elif len(options) > 1:
+            if union is None:
+                union, branch = tuple(key), part
+            here = _branch(options, part)
+        else:
+            holder = options[0]
+            key.append(part)
+            here = _inside(holder, part)
+    message = _message(detail, _options(here)[0], holder, of_key)
+    silent = of_key or detail["type"] in {"missing", "extra_forbidden"}
+    value = "" if silent else _shown(detail["input"])
+    return _Mistake(tuple(key), union, branch, value, message)
+
+
+def _without_other_branches(found: Sequence[_Mistake]) -> list[_Mistake]:
+    """Report of each union only the branch the user meant, or all of them in one mistake."""
+    unions: dict[tuple[str | int, ...], dict[str | int | None, list[_Mistake]]] = {}
+    for mistake in found:
+        if mistake.union is not None:
+            unions.setdefault(mistake.union, {}).setdefault(mistake.branch, []).append(mistake)
+    kept: list[_Mistake] = []
+    for mistake in found:
+        if mistake.union is None:
+            kept.append(mistake)
+            continue
+        branches = unions.pop(mistake.union, None)
+        if branches is None:
+            continue
+        meant = [ms for ms in branches.values() if any(len(m.key) > len(mistake.union) for m in ms)]
+        if meant:
+            kept += min(meant, key=len)
+        else:
+            messages = dict.fromkeys(m.message for ms in branches.values() for m in ms)
+            first, *others = messages
+            either = [first, *(message.removeprefix("must be ") for message in others)]
+            kept.append(mistake._replace(message=" or ".join(either)))
+    return kept
+
+
+def _message(detail: ErrorDetails, here: Any, holder: Any, of_key: bool) -> str:
+    """Return what is wrong; `holder` is what the key stands in, `here` what it should be."""
+    kind = detail["type"]
+    if kind in KINDS:
+        return KINDS[kind]
+    if kind == "missing":
+        return "missing key; it must be given"
+    if kind == "extra_forbidden":
+        fields = holder.model_fields if _is_model(holder) else ()
+        return f"unknown key{nearest(str(detail['loc'][-1]), fields)}"
+    if kind == "literal_error" and get_origin(here) is Literal:
+        return _not_among(get_args(here), detail["input"], of_key)
+    if kind in {"value_error", "assertion_error"}:
+        return str(detail.get("ctx", {}).get("error") or detail["msg"])
+    message = re.sub(r"^(Input|Value|String|List|Tuple|Dictionary) should ", "must ", detail["msg"])
+    return " ".join(message.split())
+
+
+def _not_among(choices: Sequence[Any], value: Any, of_key: bool) -> str:
+    names = [str(choice) for choice in choices]
+    if of_key:
+        return f"unknown key{nearest(str(value), names)}"
+    close = _closest(value, names) if isinstance(value, str) else None
+    hint = f'; did you mean "{close}"?' if close is not None else ""
+    return f"must be one of {', '.join(map(_plain, choices))}{hint}"
+
+
+def _closest(name: str, known: Sequence[str]) -> str | None:
+    by_folded = {each.casefold(): each for each in reversed(known)}
+    close = difflib.get_close_matches(name.casefold(), by_folded, n=1, cutoff=CLOSE_ENOUGH)
+    return by_folded[close[0]] if close else None
+
+
+def _written(key: Sequence[str | int]) -> str:
+    """Return a key as TOML writes it, list entries as [0], [1], ..."""
+    text = ""
+    for part in key:
+        if isinstance(part, int):
+            text += f"[{part}]"
+        else:
+            text += "." + (part if re.fullmatch(r"[A-Za-z0-9_-]+", part) else _plain(part))
+    return text.removeprefix(".")
+
+
+def _shown(value: Any) -> str:
+    """Return ' = VALUE', or nothing where the value is a table or a list."""
+    if isinstance(value, Mapping | list | tuple | set | BaseModel):
+        return ""
+    text = _plain(value)
+    return " = " + (text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 3] + "...")
+
+
+def _plain(value: Any) -> str:
+    """Return a value as TOML writes it, on one line."""
+    if isinstance(value, bool | str):
+        return json.dumps(value, ensure_ascii=False)
+    return " ".join(str(value).split())
+
+
+def _options(annotation: Any) -> list[Any]:
+    """Return what an annotation allows besides None, at least one."""
+    while get_origin(annotation) is Annotated or hasattr(annotation, "__value__"):
+        annotation = getattr(annotation, "__value__", None) or _argument(annotation, 0)
+    if get_origin(annotation) not in {Union, UnionType}:
+        return [annotation]
+    options = [each for each in get_args(annotation) if each is not NoneType]
+    return options if len(options) > 1 else _options(options[0])
+
+
+def _branch(options: Sequence[Any], label: str | int) -> Any:
+    """Return the branch of a union that pydantic calls `label`, None if it cannot be told."""
+    for option in options:
+        here = _options(option)[0]
+        if _is_model(here):
+            if here.__name__ == label or any(
+                label in get_args(field.annotation) for field in here.model_fields.values()
+            ):
+                return here
+        elif str(label).startswith(f"{getattr(get_origin(here), '__name__', '-').lower()}["):
+            return here
+    return None
+
+
+def _inside(holder: Any, part: str | int) -> Any:
+    """Return what stands under a key of a model, a dict or a list, None if unknown."""
+    if _is_model(holder):
+        field = holder.model_fields.get(part)
+        return field.annotation if field is not None else None
+    if isinstance(part, int) and get_origin(holder) is tuple and Ellipsis not in get_args(holder):
+        return _argument(holder, part)
+    return _argument(holder, 1 if get_origin(holder) is dict else 0)
+
+
+def _argument(annotation: Any, index: int) -> Any:
+    arguments = get_args(annotation)
+    return arguments[index] if index < len(arguments) else None
+
+
+def _is_model(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, BaseModel)

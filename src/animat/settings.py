@@ -1,0 +1,118 @@
+"""Settings that come from a user: typed, frozen, and refused with every mistake at once.
+
+A mistake is one line: where, which key, its value, what is allowed, and the nearest known name.
+The same lines come from a TOML file (`read_toml`) and from Python (`explain`).
+"""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from animat.mistakes import mistakes, nearest
+
+__all__ = ["Settings", "SettingsError", "explain", "nearest", "read_toml"]
+
+LARGEST_FILE = 1_000_000
+"""Bytes; a settings file is written by hand, so a larger one is some other file."""
+
+DEEPEST = 32
+"""Tables and lists inside one another; no settings come near it."""
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+class Settings(BaseModel):
+    """A group of settings: frozen, no unknown keys, no coercion (1 is not true), all finite.
+
+    A validator that finds several mistakes raises ValueError with a line for each.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+class SettingsError(ValueError):
+    """Everything that is wrong with some settings; `str` gives a line for each mistake."""
+
+    def __init__(self, *problems: str) -> None:
+        """Keep the problems, one line each."""
+        self.problems = problems
+        super().__init__(*problems)
+
+    def __str__(self) -> str:
+        """Return the problems, one line each."""
+        return "\n".join(self.problems)
+
+
+def explain(error: ValidationError, model: type[BaseModel], where: str) -> SettingsError:
+    """Return what pydantic found wrong with settings of `model`, each line led by `where`."""
+    return SettingsError(*(f"{where}: {line}" for line in mistakes(error, model)))
+
+
+def read_toml(path: Path | str, model: type[Model]) -> Model:
+    """Return the settings in a TOML file.
+
+    Raises:
+        SettingsError: the file cannot be read, is empty, is no TOML, or has mistakes.
+    """
+    data = _parsed(_text(Path(path)), path)
+    if not data:
+        raise SettingsError(f"{path}: is empty: it sets nothing")
+    if _is_deeper_than(data, DEEPEST):
+        raise SettingsError(f"{path}: is nested too deeply: more than {DEEPEST} levels")
+    try:
+        # By way of JSON because there a list may become a tuple and a string a path, even strictly.
+        return model.model_validate_json(json.dumps(data, default=str))
+    except ValidationError as error:
+        raise explain(error, model, str(path)) from None
+
+
+def _text(path: Path) -> str:
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+    except FileNotFoundError:
+        raise SettingsError(f"{path}: no such file") from None
+    except IsADirectoryError:
+        raise SettingsError(f"{path}: is a directory, not a settings file") from None
+    except OSError as error:
+        raise SettingsError(f"{path}: cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise SettingsError(f"{str(path)!r}: is no path: {error}") from None
+    if len(content) > LARGEST_FILE:
+        raise SettingsError(f"{path}: is too large for a settings file: more than 1 MB")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise SettingsError(f"{path}: is not UTF-8 text (line {line})") from None
+
+
+def _parsed(text: str, path: Path | str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise SettingsError(f"{path}: is nested too deeply: more than {DEEPEST} levels") from None
+    except tomllib.TOMLDecodeError as error:
+        last = text.rstrip().count("\n") + 1
+        what = str(error).replace("(at end of document)", f"(at end of document, line {last})")
+        raise SettingsError(f"{path}: is not TOML: {what}") from None
+    except ValueError:
+        raise SettingsError(f"{path}: has a whole number of too many digits") from None
+
+
+def _is_deeper_than(data: dict[str, Any], levels: int) -> bool:
+    """Look level by level: recursion would itself fail on what is too deep."""
+    level: list[Any] = [data]
+    for _ in range(levels):
+        level = [
+            inner
+            for value in level
+            for inner in (value.values() if isinstance(value, dict) else value)
+            if isinstance(inner, dict | list)
+        ]
+    return bool(level)
