@@ -26,12 +26,14 @@ import numba
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False}
+PLAIN = (bool, int, float, str, type(None))
+
+OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False, "_nrt": False}
 
 
 def compiled(function: Function) -> Function:
     """Compile a function of a step; with `NUMBA_DISABLE_JIT=1` it stays plain Python."""
-    return _identified(numba.njit(**OPTIONS)(function), function)
+    return _identified(numba.njit(forceinline=True, **OPTIONS)(function), function)
 
 
 def kernel(function: Function) -> Function:
@@ -55,7 +57,27 @@ def package_stamp() -> str:
 def _identified(dispatcher: Any, function: Callable[..., Any]) -> Any:
     """Give a compiled function an identity that a later process finds again."""
     if dispatcher is not function:
-        source = inspect.getsource(function).encode()
-        digest = hashlib.sha256(source).hexdigest()
-        dispatcher._set_uuid(f"{function.__module__}.{function.__qualname__}:{digest}")
+        identity = _identity(function)
+        if identity is not None:
+            dispatcher._set_uuid(identity)
     return dispatcher
+
+
+def _identity(function: Callable[..., Any]) -> str | None:
+    """Return a text that is equal only for functions that compute the same, or None.
+
+    It covers the whole source file, for what the function calls there, and the plain values the
+    function takes from around it. None if it takes something else from an enclosing function.
+    """
+    digest = hashlib.sha256(function.__code__.co_code)
+    source = Path(inspect.getsourcefile(function) or "")
+    digest.update(source.read_bytes() if source.is_file() else repr(function.__code__).encode())
+    for cell in function.__closure__ or ():
+        if not isinstance(cell.cell_contents, PLAIN):
+            return None
+        digest.update(repr(cell.cell_contents).encode())
+    for name in function.__code__.co_names:
+        value = function.__globals__.get(name)
+        if isinstance(value, PLAIN):
+            digest.update(f"{name}={value!r}".encode())
+    return f"{function.__module__}.{function.__qualname__}:{digest.hexdigest()}"

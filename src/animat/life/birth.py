@@ -1,0 +1,98 @@
+"""Birth: where a life starts and with what networks.
+
+The start pose is uniform over the playground, at least 50 mm from its edge and clear of
+everything; the weights of untrained networks are uniform in [0, 1). Both come from streams of
+their own, so that lives of one seed and index start alike whatever their agent.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from animat.life.state import NO_SITE, state_dtype
+from animat.mind.mind import Mind
+from animat.numerics.compiled import compiled, kernel
+from animat.numerics.streams import START, WEIGHTS, uniforms
+from animat.robot.collision import CLEAR, touched
+
+START_MARGIN = 50.0
+"""How far from the edge of the playground a life starts at least, in mm."""
+
+ATTEMPTS = 100_000
+"""How many poses are tried before a world counts as having no room to start."""
+
+
+@kernel
+def place(states, present, lives, robot, raster, seed, width, height):
+    """Set the start poses of L states; return how many found no clear pose."""
+    homeless = 0
+    for n in range(len(states)):
+        if not find_pose(states[n], present[n], robot, raster, seed, lives[n], width, height):
+            homeless += 1
+    return homeless
+
+
+@compiled
+def find_pose(state, present, robot, raster, seed, life, width, height):
+    """Set the pose to the first clear one of those the stream START offers."""
+    for attempt in range(ATTEMPTS):
+        u_x, u_y, u_heading, _ = uniforms(seed, life, START, attempt)
+        x = START_MARGIN + u_x * (width - 2.0 * START_MARGIN)
+        y = START_MARGIN + u_y * (height - 2.0 * START_MARGIN)
+        heading = math.pi - u_heading * 2.0 * math.pi
+        if touched(x, y, heading, robot, raster, present) == CLEAR:
+            state.x = x
+            state.y = y
+            state.heading = heading
+            return True
+    return False
+
+
+@kernel
+def draw_weights(states, lives, seed):
+    """Draw the weights of L states from U[0, 1)."""
+    for n in range(len(states)):
+        weights = states[n].weights
+        rows, columns = weights.shape
+        for b in range(rows):
+            for w in range(columns):
+                index = b * columns + w
+                draws = uniforms(seed, lives[n], WEIGHTS, index // 4)
+                weights[b, w] = draws[index % 4]
+
+
+def born(
+    mind: Mind, parameters: np.record, features: int, lives: int, weights: NDArray | None
+) -> NDArray[np.void]:
+    """Return the states [L] of lives at birth, still without a place.
+
+    `weights` [B, W] or [L, B, W] are the networks they are born with; None leaves them at 0.
+    """
+    dtype = state_dtype(
+        len(parameters.law),
+        len(mind.drives),
+        len(mind.behaviours),
+        features,
+        mind.learning.hidden_units,
+        mind.weight_count(features),
+    )
+    states = np.zeros(lives, dtype)
+    states["values"] = parameters.start
+    states["previous"] = parameters.start
+    states["behaviour"] = -1
+    states["death_variable"] = -1
+    states["death_side"] = -1
+    states["site"] = NO_SITE
+    states["abandoned"] = NO_SITE
+    if weights is not None:
+        states["weights"] = weights
+    return states
+
+
+def clear_biases(states: NDArray[np.void], features: int, hidden: int) -> None:
+    """Set the biases of networks that are to have none to 0."""
+    places = [*range(0, hidden * (features + 1), features + 1), hidden * (features + 1)]
+    states["weights"][:, :, places] = 0.0

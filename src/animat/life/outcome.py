@@ -1,0 +1,119 @@
+"""The outcome of an act: success or failure, what it does to needs, and what is learnt of it."""
+
+from __future__ import annotations
+
+from animat.life.encounter import abandon
+from animat.life.sight import OUT_OF_SIGHT, distance_to
+from animat.life.state import DIED, FAILED, HIGH, LOW, SUCCEEDED, TRAINED
+from animat.mind import affordance, drives, homeostasis
+from animat.numerics.compiled import compiled
+from animat.numerics.streams import OUTCOMES, PLACEMENT, uniforms
+
+
+@compiled
+def finish(state, mind, raster, present, functions, seed, life):
+    """End an act: success or failure, what it does to the variables, and what is learnt of it."""
+    b = state.behaviour
+    likelihood = raster.affords[raster.site_type[state.site], mind.needs[b]]
+    luck, _, _, _ = uniforms(seed, life, OUTCOMES, state.acts)
+    succeeded = luck < likelihood
+    state.acts += 1
+    state.acts_by_behaviour[b] += 1
+    if succeeded:
+        state.event |= SUCCEEDED
+        state.reward = 1
+        state.successes += 1
+        state.successes_by_behaviour[b] += 1
+        suffer(state, mind, mind.success[b], functions)
+    else:
+        state.event |= FAILED
+        state.reward = -1
+        suffer(state, mind, mind.failure[b], functions)
+    cause = homeostasis.SUCCESS if succeeded else homeostasis.FAILURE
+    perish(state, mind, cause)
+    left = state.site
+    abandon(state)
+    if succeeded and mind.consumed:
+        replace(left, state, raster, present, seed, life)
+
+
+@compiled
+def suffer(state, mind, effects, functions):
+    """Move the variables by `effects` [V]; learn if the acting drive varied suddenly.
+
+    The variation is that of the drive before the variables are held back at their bounds, so that
+    no failure goes unnoticed.
+    """
+    for v in range(len(state.values)):
+        state.aftermath[v] = state.values[v] + effects[v]
+        state.changes_after[v] = state.changes[v] + effects[v]
+    if mind.learns:
+        drives.raise_drives(
+            state.aftermath, state.changes_after, mind, state.drives_after, functions.drives
+        )
+        acting = mind.serves[state.behaviour]
+        variation = state.drives_after[acting] - state.drives[acting]
+        if abs(variation) > mind.learning_threshold:
+            train(state, mind, 1.0 if variation < 0.0 else 0.0, functions)
+    homeostasis.settle(state.values, state.aftermath, mind)
+
+
+@compiled
+def train(state, mind, target, functions):
+    """Train the network of the behaviour that was run towards what came of it."""
+    state.event |= TRAINED
+    state.trainings += 1
+    affordance.learn(
+        mind.learner,
+        state.features,
+        state.weights[state.behaviour],
+        state.hidden,
+        target,
+        mind.learning_rate,
+        mind.learning_cycles,
+        mind.biases,
+        functions.learner,
+    )
+
+
+@compiled
+def perish(state, mind, cause):
+    """End the life if a variable is outside its viability zone."""
+    v = homeostasis.first_outside(state.values, mind)
+    if v >= 0:
+        state.dead = True
+        state.event |= DIED
+        state.death_variable = v
+        state.death_side = LOW if state.values[v] < mind.dies_below[v] else HIGH
+        state.death_cause = cause
+
+
+@compiled
+def replace(site, state, raster, present, seed, life):
+    """Put an object that was used up onto a spare site of its kind, out of sight, if one is free.
+
+    With k sites free, each is taken with probability 1/k; where none is, the object stays.
+    """
+    free = 0
+    for s in range(len(present)):
+        if is_spare(s, site, state, raster, present):
+            free += 1
+    luck, _, _, _ = uniforms(seed, life, PLACEMENT, state.acts)
+    take = int(luck * free)
+    for s in range(len(present)):
+        if is_spare(s, site, state, raster, present):
+            if take == 0:
+                present[s] = 1
+                present[site] = 0
+                return
+            take -= 1
+
+
+@compiled
+def is_spare(s, site, state, raster, present):
+    """Tell whether an object of `site` can be put onto site s, where nobody sees it."""
+    return (
+        not present[s]
+        and raster.site_type[s] == raster.site_type[site]
+        and distance_to(s, state.x, state.y, raster) == OUT_OF_SIGHT
+    )

@@ -1,0 +1,161 @@
+"""One step of a life: sense, metabolise, decide, act.
+
+This is the hot path. `step` is the whole of it, top to bottom. Who wants to decide in the mind's
+place calls its four parts, and sets the motor commands (`left`, `right`) before `act`, or hands in
+a selector. Every function changes `state`, the record of `animat.life.state`, in place; `present`
+[S] tells which sites hold an object.
+
+    sense       read the infrared sensors
+    metabolise  the variables drift, the drives follow, a life may end
+    decide      wander, meet an object, choose a behaviour, steer
+    act         move, collide, and take the outcome of an act that ends
+"""
+
+from __future__ import annotations
+
+from animat.life.encounter import abandon, change_mode, forget_lost, look_around
+from animat.life.outcome import finish, perish
+from animat.life.sight import bearing, distance_to
+from animat.life.state import BLOCKED, NO_SITE, REACHED, UNREACHED
+from animat.mind import behaviours, drives, homeostasis
+from animat.mind.behaviours import ACT, APPROACH, LEAVE, WANDER
+from animat.numerics.compiled import compiled
+from animat.numerics.streams import MOTORS, SENSORS, bits, uniforms
+from animat.numerics.streams import WANDER as WANDERING
+from animat.robot.collision import collide
+from animat.robot.infrared import read_infrared
+from animat.robot.motion import move
+
+
+@compiled
+def step(state, mind, robot, raster, present, functions, seed, life):
+    """Live one step. A life that ends in it is `dead` afterwards."""
+    begin(state)
+    if state.mode == WANDER:
+        sense(state, robot, raster, present, seed, life)
+    metabolise(state, mind, functions)
+    if not state.dead:
+        decide(state, mind, robot, raster, present, functions, seed, life)
+        act(state, mind, robot, raster, present, functions, seed, life)
+    state.step += 1
+
+
+@compiled
+def begin(state):
+    """Clear what is said of one step only."""
+    state.event = 0
+    state.reward = 0
+
+
+@compiled
+def sense(state, robot, raster, present, seed, life):
+    """Read the infrared sensors where the robot stands."""
+    words = bits(seed, life, SENSORS, state.step)
+    read_infrared(state.x, state.y, state.heading, robot, raster, present, words, state.readings)
+
+
+@compiled
+def metabolise(state, mind, functions):
+    """Let the variables drift for one step and the drives follow them; end a life that must."""
+    homeostasis.metabolise(state.values, mind, functions.law)
+    for v in range(len(state.values)):
+        state.changes[v] = state.values[v] - state.previous[v]
+        state.previous[v] = state.values[v]
+    drives.raise_drives(state.values, state.changes, mind, state.drives, functions.drives)
+    total = 0.0
+    for drive in state.drives:
+        total += drive
+    state.drive_sum += total / len(state.drives)
+    perish(state, mind, homeostasis.METABOLISM)
+
+
+@compiled
+def decide(state, mind, robot, raster, present, functions, seed, life):
+    """Set the motor commands of this step, meeting an object if one is near."""
+    if state.mode == WANDER:
+        look_around(state, mind, robot, raster, present, functions, seed, life)
+    if state.mode == WANDER:
+        search(state, mind, robot, functions, seed, life)
+    elif state.mode == ACT:
+        state.left = 0
+        state.right = 0
+    else:
+        steer(state, mind, raster)
+
+
+@compiled
+def act(state, mind, robot, raster, present, functions, seed, life):
+    """Move by the motor commands, and go on with what the robot is doing."""
+    go(state, robot, raster, present, seed, life)
+    state.mode_steps += 1
+    if state.mode == APPROACH:
+        distance = distance_to(state.site, state.x, state.y, raster)
+        ahead, aside = bearing(state, raster)
+        if distance <= robot.radius + mind.contact_range and behaviours.faces(ahead, aside):
+            state.event |= REACHED
+            change_mode(state, ACT)
+        elif state.mode_steps >= mind.approach_steps:
+            state.event |= UNREACHED
+            state.unreached += 1
+            abandon(state)
+    elif state.mode == ACT:
+        if state.mode_steps >= mind.interaction_steps:
+            finish(state, mind, raster, present, functions, seed, life)
+    elif state.mode == LEAVE:
+        ahead, aside = bearing(state, raster)
+        if behaviours.has_left(ahead, aside) or state.mode_steps >= mind.leave_steps:
+            state.site = NO_SITE
+            change_mode(state, WANDER)
+    forget_lost(state, robot.radius + mind.encounter_range, raster)
+
+
+@compiled
+def search(state, mind, robot, functions, seed, life):
+    """Wander: no object calls for anything."""
+    luck_a, luck_b, _, _ = uniforms(seed, life, WANDERING, state.step)
+    left, right = behaviours.wander(
+        mind.wander,
+        state.readings,
+        robot.sensor_cosine,
+        robot.sensor_y,
+        state.memory,
+        luck_a,
+        luck_b,
+        mind.cruise_speed,
+        mind.turn_speed,
+        functions.wander,
+    )
+    state.left = int(left)
+    state.right = int(right)
+
+
+@compiled
+def steer(state, mind, raster):
+    """Turn to the object and approach it, or turn away from it."""
+    ahead, aside = bearing(state, raster)
+    if state.mode == APPROACH:
+        left, right = behaviours.approach(ahead, aside, mind.cruise_speed, mind.turn_speed)
+    else:
+        left, right = behaviours.leave(ahead, aside, mind.cruise_speed, mind.turn_speed)
+    state.left = left
+    state.right = right
+
+
+@compiled
+def go(state, robot, raster, present, seed, life):
+    """Move by the motor commands, unless something stands in the way."""
+    if state.left == 0 and state.right == 0:
+        return
+    u_x, u_y, u_turn, _ = uniforms(seed, life, MOTORS, state.step)
+    x, y, heading = move(
+        state.x, state.y, state.heading, state.left, state.right, robot, u_x, u_y, u_turn
+    )
+    x, y, heading, blocked = collide(
+        state.x, state.y, state.heading, x, y, heading, robot, raster, present
+    )
+    state.x = x
+    state.y = y
+    state.heading = heading
+    if blocked:
+        state.event |= BLOCKED
+        state.blocked += 1

@@ -1,0 +1,107 @@
+"""The trace of a life: what was sensed, felt, done and had of it, a row for each recorded step.
+
+A row holds the pose the robot sensed in, what it sensed and felt there, what it set its motors
+to, and what came of it (reward, event) in that step; the next row's pose is where that led.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+
+from animat.life.state import EVENTS, NO_SITE
+from animat.mind.behaviours import ACT, APPROACH, LEAVE, WANDER
+from animat.mind.drives import strongest
+from animat.mind.mind import Mind
+from animat.numerics.compiled import compiled
+from animat.robot.khepera import SENSORS
+from animat.world.world import World
+
+
+def row_dtype(state: np.dtype) -> np.dtype:
+    """Return the layout of a row for states of the given layout."""
+    kept = ("x", "y", "heading", "left", "right", "readings", "values", "drives")
+    kept += ("mode", "behaviour", "site", "likelihoods", "reward", "event")
+    fields = [(name, state[name]) for name in kept]
+    return np.dtype((np.record, [("step", np.int64), *fields, ("winner", np.int64)]), align=True)
+
+
+@compiled
+def record_decision(row, state):
+    """Write down what led to the motor commands, before they are followed."""
+    row.step = state.step
+    row.x = state.x
+    row.y = state.y
+    row.heading = state.heading
+    row.left = state.left
+    row.right = state.right
+    row.mode = state.mode
+    row.behaviour = state.behaviour
+    row.site = state.site
+    row.winner = strongest(state.drives)
+    for n in range(len(row.readings)):
+        row.readings[n] = state.readings[n]
+    for v in range(len(row.values)):
+        row.values[v] = state.values[v]
+    for d in range(len(row.drives)):
+        row.drives[d] = state.drives[d]
+    for b in range(len(row.likelihoods)):
+        row.likelihoods[b] = state.likelihoods[b]
+
+
+@compiled
+def record_outcome(row, state):
+    """Write down what came of the step."""
+    row.reward = state.reward
+    row.event = state.event
+
+
+def table(rows: NDArray[np.void], mind: Mind, world: World) -> pa.Table:
+    """Return rows of the kernel as a table, with the names of the mind and of the world."""
+    variables, drives, behaviours = (
+        list(mind.resolved_variables()),
+        list(mind.drives),
+        list(mind.behaviours),
+    )
+    columns: dict[str, object] = {name: rows[name] for name in ("step", "x", "y", "heading")}
+    for n in range(SENSORS):
+        columns[f"infrared_{n}"] = rows["readings"][:, n]
+    columns["left"], columns["right"] = rows["left"], rows["right"]
+    for v, name in enumerate(variables):
+        columns[name] = rows["values"][:, v]
+    for d, name in enumerate(drives):
+        columns[name] = rows["drives"][:, d]
+    columns["winning_drive"] = _names(rows["winner"], drives)
+    columns["behaviour"] = _behaviour_names(rows, behaviours)
+    types = np.array([*world.layout.site_types(), len(world.types)])
+    columns["object"] = _names(
+        np.where(rows["site"] == NO_SITE, -1, types[rows["site"]]), [t.name for t in world.types]
+    )
+    columns["site"] = rows["site"]
+    for b, name in enumerate(behaviours):
+        columns[f"likelihood_{name}"] = rows["likelihoods"][:, b]
+    columns["reward"] = rows["reward"]
+    columns["event"] = _event_names(rows["event"])
+    return pa.table(columns)
+
+
+def _names(codes: NDArray[np.int64], names: list[str]) -> pa.Array:
+    """Return the names of codes as a dictionary column; null for a negative code."""
+    indices = pa.array(codes, mask=codes < 0, type=pa.int32())
+    return pa.DictionaryArray.from_arrays(indices, pa.array(names))
+
+
+def _behaviour_names(rows: NDArray[np.void], behaviours: list[str]) -> pa.Array:
+    """Return what the robot was doing; an act goes by the name of its behaviour."""
+    doing = {WANDER: 0, APPROACH: 1, LEAVE: 2}
+    codes = np.select([rows["mode"] == mode for mode in doing], list(doing.values()), 0)
+    codes = np.where(rows["mode"] == ACT, 3 + rows["behaviour"], codes)
+    return _names(codes, ["wander", "approach", "leave", *behaviours])
+
+
+def _event_names(events: NDArray[np.int64]) -> pa.Array:
+    """Return the names of the events of each step, joined by blanks; empty for none."""
+    codes, inverse = np.unique(events, return_inverse=True)
+    texts = [" ".join(name for bit, name in enumerate(EVENTS) if code >> bit & 1) for code in codes]
+    return _names(inverse.astype(np.int64), texts)

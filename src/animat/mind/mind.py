@@ -1,0 +1,246 @@
+"""The mind: every setting of it, checked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field, field_validator, model_validator
+
+from animat.mind.affordance import weight_count
+from animat.mind.agents import AGENTS, Agent
+from animat.mind.functions import BUILT_IN, Functions, resolve
+from animat.mind.networks import Networks
+from animat.mind.parameters import ESTIMATORS, LAWS, LEARNERS, SELECTORS, WANDERERS
+from animat.mind.physiology import PHYSIOLOGIES, Kind, Variable
+from animat.settings import Settings, nearest
+
+Unit = Annotated[float, Field(ge=0.0, le=1.0)]
+Effects = dict[str, float]
+Function = str | Callable[..., Any]
+
+
+class VariableChange(Settings):
+    """What is to differ in a variable of the physiology, or the whole of a new variable."""
+
+    law: Function | None = None
+    rate: Annotated[float, Field(gt=0.0, lt=1.0)] | None = None
+    set_point: float | None = None
+    start: float | None = None
+    low: float | None = None
+    high: float | None = None
+    kind: Kind | None = None
+    lethal: bool | None = None
+    lethal_margin: Annotated[float, Field(ge=0.0)] | None = None
+
+
+class Drive(Settings):
+    """A drive: by variable, its coefficients a (on errors) and b (on rates; equation 3)."""
+
+    a: Effects
+    b: Effects = {}
+
+
+class Behaviour(Settings):
+    """A behaviour: the drive it serves, the affordance it needs, and what it does to variables.
+
+    `success` and `failure` give for each variable how far the act moves it, positive towards
+    satisfaction. Left out, an act moves the variables its drive watches by the mind's
+    `success_effect`, and by minus its `failure_effect`.
+    """
+
+    serves: str
+    needs: str
+    success: Effects | None = None
+    failure: Effects | None = None
+
+
+class Learning(Settings):
+    """The affordance networks and their learning rule."""
+
+    hidden_units: Annotated[int, Field(ge=1, le=64)] = 2
+    biases: bool = True
+    rate: Annotated[float, Field(gt=0.0)] = 0.5
+    cycles: Annotated[int, Field(ge=1, le=10_000)] = 10
+    threshold: Annotated[float, Field(ge=0.0)] = 0.05
+    estimator: Function = "feed_forward"
+    learner: Function = "back_propagation"
+
+
+class Mind(Settings):
+    """A mind: what it needs, what urges it, how it chooses, what it knows and how it learns.
+
+    The defaults are those of the paper; `networks` are those a robot has learnt, needed by the
+    agent AF. See docs/settings.md for every setting and the readings it stands for.
+    """
+
+    model_config = ConfigDict(arbitrary_types_allowed=True)
+
+    agent: Literal["BLIND", "AF", "LEARNING", "ORACLE", "RANDOM"] = "BLIND"
+    physiology: Literal["excess", "decay", "relax", "linear"] = "excess"
+    variables: dict[str, VariableChange] = {}
+    drives: dict[str, Drive] = {
+        "hunger": Drive(a={"nutrition": 1.0}),
+        "fatigue": Drive(a={"stamina": 1.0}),
+        "curiosity": Drive(a={"restlessness": 1.0}),
+    }
+    behaviours: dict[str, Behaviour] = {
+        "eat": Behaviour(serves="hunger", needs="grasp"),
+        "shelter": Behaviour(serves="fatigue", needs="shelter"),
+        "interact": Behaviour(serves="curiosity", needs="interact"),
+    }
+    lethal_margin: Annotated[float, Field(ge=0.0, lt=0.5)] | None = None
+    overflow: Literal["clamp", "lethal"] = "clamp"
+    failed_act: Literal["lethal", "clamp"] = "lethal"
+    success_effect: Unit = 0.2
+    failure_effect: Unit = 0.2
+    death: bool | None = None
+    error: Literal["signed", "rectified", "absolute"] = "signed"
+    drive_function: Function | None = None
+    selector: Function | None = None
+    gate: Literal["positive", "always"] = "positive"
+    likelihood_threshold: Unit = 0.5
+    encounter_range: Annotated[float, Field(gt=0.0, le=200.0)] = 30.0
+    contact_range: Annotated[float, Field(ge=6.0, le=200.0)] = 10.0
+    interaction_steps: Annotated[int, Field(ge=1)] = 20
+    approach_steps: Annotated[int, Field(ge=1)] = 100
+    leave_steps: Annotated[int, Field(ge=0)] = 40
+    consumed: bool = False
+    feature_noise: Unit = 0.0
+    wander: Function = "curved"
+    cruise_speed: Annotated[int, Field(ge=1, le=10)] = 5
+    turn_speed: Annotated[int, Field(ge=1, le=10)] = 5
+    learning: Learning = Learning()
+    networks: Networks | None = Field(default=None, exclude=True, repr=False)
+
+    @field_validator("selector")
+    @classmethod
+    def _known_selector(cls, value: Function | None) -> Function | None:
+        return _known("selector", value, SELECTORS)
+
+    @field_validator("wander")
+    @classmethod
+    def _known_wander(cls, value: Function) -> Function:
+        return _known("wander", value, WANDERERS)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Mind:
+        variables = self.resolved_variables()
+        problems = []
+        for name, drive in self.drives.items():
+            for watched in (*drive.a, *drive.b):
+                if watched not in variables:
+                    problems.append(
+                        f'drives.{name} watches "{watched}", which is no variable'
+                        f"{nearest(watched, variables)}"
+                    )
+        for name, behaviour in self.behaviours.items():
+            if behaviour.serves not in self.drives:
+                problems.append(
+                    f'behaviours.{name}.serves = "{behaviour.serves}" is no drive'
+                    f"{nearest(behaviour.serves, self.drives)}"
+                )
+            for moved in (*(behaviour.success or ()), *(behaviour.failure or ())):
+                if moved not in variables:
+                    problems.append(
+                        f'behaviours.{name} moves "{moved}", which is no variable'
+                        f"{nearest(moved, variables)}"
+                    )
+        if not self.drives or not self.behaviours:
+            problems.append("a mind needs at least one drive and one behaviour")
+        if self.contact_range > self.encounter_range:
+            problems.append(
+                f"contact_range = {self.contact_range} is wider than"
+                f" encounter_range = {self.encounter_range}"
+            )
+        if self.networks is not None:
+            problems += _misfit(self.networks, self)
+        if problems:
+            raise ValueError("; ".join(problems))
+        return self
+
+    @property
+    def nature(self) -> Agent:
+        """What the agent's name stands for."""
+        return AGENTS[self.agent]
+
+    @property
+    def mortal(self) -> bool:
+        """Whether a variable outside its viability zone ends the life."""
+        return self.nature.mortal if self.death is None else self.death
+
+    def resolved_variables(self) -> dict[str, Variable]:
+        """Return the variables by name: the physiology's, changed and added to by `variables`.
+
+        Raises ValueError where a changed variable is impossible.
+        """
+        resolved = dict(PHYSIOLOGIES[self.physiology])
+        if self.lethal_margin is not None:
+            changes = {"lethal_margin": self.lethal_margin}
+            for name, variable in resolved.items():
+                if variable.lethal_margin > 0.0:
+                    resolved[name] = Variable(**{**dict(variable), **changes})
+        for name, change in self.variables.items():
+            settings = dict(resolved[name]) if name in resolved else {}
+            if change.law is not None and change.kind is None:
+                settings.pop("kind", None)
+            settings.update({k: v for k, v in dict(change).items() if v is not None})
+            try:
+                resolved[name] = Variable(**settings)
+            except ValueError as error:
+                raise ValueError(f"variables.{name}: {_first_line(error)}") from error
+        return resolved
+
+    def functions(self) -> Functions:
+        """Return the user's own functions, compiled. Raises FunctionError."""
+        chosen: dict[str, Any] = {}
+        laws = {
+            name: variable.law
+            for name, variable in self.resolved_variables().items()
+            if variable.law not in LAWS
+        }
+        if len(set(laws.values())) > 1:
+            raise ValueError(
+                f"variables {', '.join(laws)} follow different laws of your own;"
+                " one function must serve them all"
+            )
+        for law in laws.values():
+            chosen["law"] = resolve("law", law)
+        if self.drive_function is not None:
+            chosen["drives"] = resolve("drives", self.drive_function)
+        for role, value, known in (
+            ("selector", self.selector, SELECTORS),
+            ("estimator", self.learning.estimator, ESTIMATORS),
+            ("learner", self.learning.learner, LEARNERS),
+            ("wander", self.wander, WANDERERS),
+        ):
+            if value is not None and value not in known:
+                chosen[role] = resolve(role, value)
+        return BUILT_IN._replace(**chosen)
+
+    def weight_count(self, feature_count: int) -> int:
+        """Return the number of weights of one of its networks."""
+        return weight_count(feature_count, self.learning.hidden_units)
+
+
+def _known(role: str, value: Any, known: dict[Any, int]) -> Any:
+    """Let through a built-in name, a function, or FILE.py:NAME."""
+    if isinstance(value, str) and value not in known and ".py:" not in value:
+        raise ValueError(f'"{value}" is no {role}{nearest(value, known)}, nor FILE.py:NAME')
+    return value
+
+
+def _misfit(networks: Networks, mind: Mind) -> list[str]:
+    if networks.behaviours != tuple(mind.behaviours):
+        return [f"networks are for {networks.behaviours}, the mind has {tuple(mind.behaviours)}"]
+    if networks.hidden != mind.learning.hidden_units:
+        return [
+            f"networks have {networks.hidden} hidden units,"
+            f" learning.hidden_units = {mind.learning.hidden_units}"
+        ]
+    return []
+
+
+def _first_line(error: ValueError) -> str:
+    errors = getattr(error, "errors", None)
+    return "; ".join(str(e["msg"]) for e in errors()) if errors else str(error)

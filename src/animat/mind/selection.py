@@ -1,0 +1,55 @@
+"""Selection of behaviour: which behaviour the drives call for when an object is met.
+
+A selector has the signature `select(drives, likelihoods, serves, luck) -> behaviour`: `drives` [D];
+`likelihoods` [B], what the mind believes of the object met; `serves` [B], the drive each behaviour
+serves; `luck`, a uniform in [0, 1) of this step. It returns the index of a behaviour, or -1 for
+none.
+"""
+
+from __future__ import annotations
+
+from animat.mind.drives import strongest
+from animat.numerics.compiled import compiled
+
+WINNER_TAKE_ALL, AFFORDANCE_TIMES_DRIVE, RANDOM, CUSTOM_SELECTOR = range(4)
+
+
+@compiled
+def winner_take_all(drives, likelihoods, serves, luck):
+    """Return the first behaviour that serves the strongest drive (the paper's arbitration)."""
+    winner = strongest(drives)
+    for behaviour in range(len(serves)):
+        if serves[behaviour] == winner:
+            return behaviour
+    return -1
+
+
+@compiled
+def affordance_times_drive(drives, likelihoods, serves, luck):
+    """Return the behaviour with the largest product of drive and likelihood (2010)."""
+    best = 0
+    for behaviour in range(1, len(serves)):
+        if (
+            drives[serves[behaviour]] * likelihoods[behaviour]
+            > drives[serves[best]] * likelihoods[best]
+        ):
+            best = behaviour
+    return best
+
+
+@compiled
+def random(drives, likelihoods, serves, luck):
+    """Return any behaviour, each equally likely."""
+    return int(luck * len(serves))
+
+
+@compiled
+def select(selector, drives, likelihoods, serves, luck, custom):
+    """Choose by the selector of the given code; `custom` is the user's own function."""
+    if selector == WINNER_TAKE_ALL:
+        return winner_take_all(drives, likelihoods, serves, luck)
+    if selector == AFFORDANCE_TIMES_DRIVE:
+        return affordance_times_drive(drives, likelihoods, serves, luck)
+    if selector == RANDOM:
+        return random(drives, likelihoods, serves, luck)
+    return custom(drives, likelihoods, serves, luck)
