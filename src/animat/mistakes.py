@@ -35,6 +35,8 @@ KINDS = {
     "finite_number": "must be a finite number",
 }
 
+MISSING = "missing key; it must be given"
+
 LONGEST_VALUE = 60
 """Characters of a value that are worth repeating."""
 
@@ -60,10 +62,10 @@ def mistakes(error: ValidationError, model: type[BaseModel]) -> list[str]:
 
 class _Mistake(NamedTuple):
     key: tuple[str | int, ...]
-    union: tuple[str | int, ...] | None  # the key of the outermost union on the way, if any
-    branch: str | int | None  # which of its branches this mistake belongs to
     value: str
     message: str
+    union: tuple[str | int, ...] | None = None  # the key of the outermost union on the way
+    branch: str | int | None = None  # which of its branches this mistake belongs to
 
     def lines(self) -> list[str]:
         """Return a line for each mistake that a validator of ours reported together."""
@@ -90,10 +92,23 @@ def _found(detail: ErrorDetails, model: type[BaseModel]) -> _Mistake:
             holder = options[0]
             key.append(part)
             here = _inside(holder, part)
+    if detail["type"] in {"union_tag_invalid", "union_tag_not_found"}:
+        return _untagged(detail, tuple(key))
     message = _message(detail, _options(here)[0], holder, of_key)
     silent = of_key or detail["type"] in {"missing", "extra_forbidden"}
     value = "" if silent else _shown(detail["input"])
-    return _Mistake(tuple(key), union, branch, value, message)
+    return _Mistake(tuple(key), value, message, union, branch)
+
+
+def _untagged(detail: ErrorDetails, key: tuple[str | int, ...]) -> _Mistake:
+    """Return what is wrong with the key by whose value the branch of a union is chosen."""
+    context = detail.get("ctx", {})
+    tag = context["discriminator"].strip("'")
+    if detail["type"] == "union_tag_not_found":
+        return _Mistake((*key, tag), "", MISSING)
+    choices = re.findall(r"'([^']*)'", context["expected_tags"])
+    value = context["tag"]
+    return _Mistake((*key, tag), _shown(value), _not_among(choices, value, False))
 
 
 def _without_other_branches(found: Sequence[_Mistake]) -> list[_Mistake]:
@@ -127,16 +142,16 @@ def _message(detail: ErrorDetails, here: Any, holder: Any, of_key: bool) -> str:
     if kind in KINDS:
         return KINDS[kind]
     if kind == "missing":
-        return "missing key; it must be given"
+        return MISSING
     if kind == "extra_forbidden":
         fields = holder.model_fields if _is_model(holder) else ()
         return f"unknown key{nearest(str(detail['loc'][-1]), fields)}"
     if kind == "literal_error" and get_origin(here) is Literal:
         return _not_among(get_args(here), detail["input"], of_key)
-    if kind in {"value_error", "assertion_error"}:
+    if kind == "value_error":
         return str(detail.get("ctx", {}).get("error") or detail["msg"])
     message = re.sub(r"^(Input|Value|String|List|Tuple|Dictionary) should ", "must ", detail["msg"])
-    return " ".join(message.split())
+    return " ".join(message.replace(" after validation,", ",").split())
 
 
 def _not_among(choices: Sequence[Any], value: Any, of_key: bool) -> str:
@@ -149,8 +164,12 @@ def _not_among(choices: Sequence[Any], value: Any, of_key: bool) -> str:
 
 
 def _closest(name: str, known: Sequence[str]) -> str | None:
+    folded = name.casefold()
     by_folded = {each.casefold(): each for each in reversed(known)}
-    close = difflib.get_close_matches(name.casefold(), by_folded, n=1, cutoff=CLOSE_ENOUGH)
+    close = difflib.get_close_matches(folded, by_folded, n=1, cutoff=CLOSE_ENOUGH)
+    if not close:
+        # Two letters swapped make short names look unlike: FA for AF.
+        close = [other for other in by_folded if sorted(other) == sorted(folded)]
     return by_folded[close[0]] if close else None
 
 
