@@ -132,7 +132,7 @@ def test_the_worlds_are_compared_for_both_agents_and_the_worse_decides(lives_tab
     ]
     assert claim.ours == claim.parts[1].ours == pytest.approx(1 / 1.5, rel=1e-5)
     assert "decides (AF)" in claim.how
-    assert "BLIND 3.00, holds" in claim.how
+    assert "BLIND 3.00 holds, AF 0.67 fails" in claim.how
 
 
 def test_of_two_agents_for_whom_it_holds_the_less_sure_one_is_shown(lives_table):

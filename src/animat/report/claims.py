@@ -19,10 +19,10 @@ from animat.report.lives import cell, column, restricted, restriction
 Verdict = Literal["holds", "fails", "undecided"]
 
 ABUNDANT_GAIN = (1.75, 2.25)
-"""C4: "nearly 100 %" is a gain nearer to 100 % than to 50 % or 150 %, so 75 % to 125 %."""
+"""C4: "nearly 100%" is a gain nearer to 100 % than to 50 % or 150 %, so 75 % to 125 %."""
 
 SCARCE_GAIN = (1.25, 1.75)
-"""C5: "nearly 50 %" is a gain nearer to 50 % than to nothing or to 100 %, so 25 % to 75 %."""
+"""C5: "nearly 50%" is a gain nearer to 50 % than to nothing or to 100 %, so 25 % to 75 %."""
 
 AFFORDED = 0.8
 """C7: a network knows that an object affords an act from this likelihood on."""
@@ -125,8 +125,8 @@ def judge_lifespans(
             seed,
             resamples,
         ),
-        _magnitude("C4", "abundant", "nearly 100 %", rich, ABUNDANT_GAIN, rich_how),
-        _magnitude("C5", "scarce", "nearly 50 %", poor, SCARCE_GAIN, poor_how),
+        _magnitude("C4", "abundant", "nearly 100%", rich, ABUNDANT_GAIN, rich_how),
+        _magnitude("C5", "scarce", "nearly 50%", poor, SCARCE_GAIN, poor_how),
         Claim(
             "C6",
             "the gain in the abundant world exceeds the gain in the scarce world",
@@ -232,8 +232,9 @@ def _worlds(agents: dict[str, tuple[pa.Table, pa.Table]], seed: int, resamples: 
     for agent, (rich, poor) in agents.items():
         estimate, how = _ratio(rich, poor, seed, resamples)
         parts.append(Part(agent, *estimate, above(estimate, 1.0)))
-        hows.append(f"{agent} {estimate.value:.2f}, {parts[-1].verdict} ({how})")
+        hows.append(how)
     worst = min(parts, key=lambda part: (_ORDER.index(part.verdict), part.low))
+    each = ", ".join(f"{part.label} {part.ours:.2f} {part.verdict}" for part in parts)
     return Claim(
         "C3",
         "agents live longer in the abundant world than in the scarce one",
@@ -243,7 +244,7 @@ def _worlds(agents: dict[str, tuple[pa.Table, pa.Table]], seed: int, resamples: 
         worst.high,
         worst.verdict,
         "ratio of mean lifespans abundant/scarce above 1 for both agents, shown for the one that "
-        f"decides ({worst.label}): " + "; ".join(hows),
+        f"decides ({worst.label}): {each}; {hows[parts.index(worst)]}",
         tuple(parts),
     )
 

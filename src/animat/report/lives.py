@@ -27,7 +27,10 @@ def column(table: pa.Table, name: str) -> NDArray:
     if name not in table.column_names:
         there = ", ".join(table.column_names)
         raise ValueError(f"the table has no column '{name}'; it has: {there}")
-    return np.asarray(table.column(name).to_numpy(zero_copy_only=False))
+    values = table.column(name)
+    if pa.types.is_dictionary(values.type):
+        values = values.cast(values.type.value_type)
+    return np.asarray(values.to_numpy(zero_copy_only=False))
 
 
 def cell(table: pa.Table, **values: str | int | float) -> pa.Table:

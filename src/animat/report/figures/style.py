@@ -1,0 +1,138 @@
+"""How all figures look, and how they are saved.
+
+Colours are those of Okabe and Ito, which people with any common colour blindness can tell apart;
+where two things meet, a pattern or a line style tells them apart as well, for print in black.
+"""
+
+import io
+from collections.abc import Callable, Iterable
+from functools import wraps
+from pathlib import Path
+from typing import Any, ParamSpec
+
+from cycler import cycler
+from matplotlib import rc_context, rcParamsDefault
+from matplotlib.figure import Figure
+
+from animat.report.files import write_whole
+
+BLACK = "#000000"
+ORANGE = "#E69F00"
+SKY = "#56B4E9"
+GREEN = "#009E73"
+YELLOW = "#F0E442"
+BLUE = "#0072B2"
+VERMILLION = "#D55E00"
+PURPLE = "#CC79A7"
+GREY = "#8A8A8A"
+PALE = "#E6E6E6"
+
+PALETTE = (BLUE, ORANGE, GREEN, VERMILLION, SKY, PURPLE, YELLOW, BLACK)
+HATCHES = ("", "////", "...", "xxx", "\\\\\\\\", "+++")
+LINES = ("-", "--", ":", "-.")
+
+# Shape is the hue, size the depth: warm triangles, cool circles, pale small and deep large.
+_TYPES = {"TS": ORANGE, "TL": VERMILLION, "CS": SKY, "CL": BLUE}
+_TYPE_WORDS = {
+    "TS": "TS, small triangle",
+    "TL": "TL, large triangle",
+    "CS": "CS, small circle",
+    "CL": "CL, large circle",
+}
+_AGENTS = {"BLIND": ORANGE, "AF": BLUE}
+
+_OTHER = ("backend", "interactive", "toolbar", "webagg", "keymap", "animation", "date", "tk")
+
+# Built on matplotlib's own defaults, so that a user's matplotlibrc does not show.
+STYLE: dict[Any, Any] = {
+    **{name: value for name, value in rcParamsDefault.items() if not name.startswith(_OTHER)},
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "axes.titlesize": 10.0,
+    "axes.labelsize": 9.0,
+    "xtick.labelsize": 8.5,
+    "ytick.labelsize": 8.5,
+    "legend.fontsize": 8.5,
+    "legend.frameon": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.prop_cycle": cycler(color=PALETTE),
+    "axes.axisbelow": True,
+    "grid.color": PALE,
+    "hatch.linewidth": 0.7,
+    "lines.linewidth": 1.4,
+    "savefig.facecolor": "white",
+    "svg.fonttype": "path",
+    "svg.hashsalt": "animat",
+}
+
+P = ParamSpec("P")
+
+
+def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
+    """Run `draw` under `STYLE`, whatever the user's own matplotlib settings are."""
+
+    @wraps(draw)
+    def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
+        with rc_context(STYLE):
+            return draw(*args, **kwargs)
+
+    return drawn
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure, sides in inches, that keeps its parts from overlapping."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def colours(names: Iterable[str], known: dict[str, str]) -> dict[str, str]:
+    """A colour for each name: its own if it is known, else the next one nobody has."""
+    names = list(dict.fromkeys(names))
+    taken = {known[name] for name in names if name in known}
+    free = [colour for colour in PALETTE if colour not in taken] or list(PALETTE)
+    unknown = [name for name in names if name not in known]
+    given = {name: free[i % len(free)] for i, name in enumerate(unknown)}
+    return {name: known.get(name) or given[name] for name in names}
+
+
+def type_colours(types: Iterable[str]) -> dict[str, str]:
+    """A colour for each object type, Table 1's first; those always have the same."""
+    types = list(types)
+    listed = [name for name in _TYPES if name in types]
+    return colours([*listed, *types], _TYPES)
+
+
+def agent_colours(agents: Iterable[str]) -> dict[str, str]:
+    """A colour for each agent; BLIND and AF always have the same."""
+    return colours(agents, _AGENTS)
+
+
+def type_words(name: str) -> str:
+    """An object type as a legend says it."""
+    return _TYPE_WORDS.get(name, name)
+
+
+def svg(fig: Figure) -> bytes:
+    """The figure as SVG; the same figure gives the same bytes on any day."""
+    return _render(fig, "svg", {"Date": None})
+
+
+def png(fig: Figure, dpi: int = 200) -> bytes:
+    """The figure as PNG at `dpi` dots per inch."""
+    return _render(fig, "png", {"Software": None}, dpi=dpi)
+
+
+def save(fig: Figure, stem: Path | str) -> tuple[Path, Path]:
+    """Write `stem`.svg and `stem`.png and return their paths. Raises OSError if it cannot."""
+    stem = Path(stem)
+    paths = stem.with_name(stem.name + ".svg"), stem.with_name(stem.name + ".png")
+    for path, content in zip(paths, (svg(fig), png(fig)), strict=True):
+        write_whole(path, content)
+    return paths
+
+
+def _render(fig: Figure, kind: str, metadata: dict, **settings) -> bytes:
+    buffer = io.BytesIO()
+    with rc_context(STYLE):
+        fig.savefig(buffer, format=kind, metadata=metadata, **settings)
+    return buffer.getvalue()

@@ -1,0 +1,39 @@
+import pytest
+
+from animat.report.figures import style
+
+
+def luminance(colour):
+    values = [int(colour[at : at + 2], 16) / 255 for at in (1, 3, 5)]
+    linear = [v / 12.92 if v <= 0.03928 else ((v + 0.055) / 1.055) ** 2.4 for v in values]
+    return sum(w * v for w, v in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
+
+
+def test_what_is_known_keeps_its_colour_whoever_else_is_there():
+    alone = style.agent_colours(["AF"])["AF"]
+    assert style.agent_colours(["ORACLE", "RANDOM", "BLIND", "AF"])["AF"] == alone
+
+
+def test_nobody_shares_a_colour_while_there_are_enough():
+    for given in (style.agent_colours(["BLIND", "AF", "LEARNING", "ORACLE", "RANDOM"]),
+                  style.type_colours(["TS", "cube", "TL", "CS", "CL", "star"])):  # fmt: skip
+        assert len(set(given.values())) == len(given)
+
+
+def test_more_types_than_colours_are_still_drawn():
+    given = style.type_colours([f"type {k}" for k in range(30)])
+    assert len(given) == 30
+
+
+def test_types_come_in_the_order_of_table_1():
+    assert list(style.type_colours(["CL", "cube", "TS"])) == ["TS", "CL", "cube"]
+
+
+def test_agents_differ_in_black_and_white_too():
+    one, other = (luminance(c) for c in style.agent_colours(["BLIND", "AF"]).values())
+    assert (max(one, other) + 0.05) / (min(one, other) + 0.05) > 2
+
+
+def test_a_folder_that_is_not_there_is_refused(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        style.save(style.new_figure(1, 1), tmp_path / "none" / "figure")

@@ -1,0 +1,162 @@
+import base64
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from animat.report import page
+from animat.report.claims import judge
+from animat.report.estimates import UNKNOWN, Estimate
+from animat.report.page import (
+    Badge,
+    Picture,
+    Section,
+    TableBlock,
+    cells_section,
+    claims_section,
+    interval,
+    picture,
+    picture_file,
+    write_page,
+)
+from animat.report.survival import summarise
+
+
+class Reader(HTMLParser):
+    """What a browser would find: tags that are open, addresses it would load, and text."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.tags, self.loads, self.text, self.links = [], [], [], [], []
+
+    def handle_starttag(self, tag, attrs):
+        given = dict(attrs)
+        self.tags.append((tag, given))
+        self.loads += [given[name] for name in ("src", "srcset", "data") if name in given]
+        if tag == "link":
+            self.loads.append(given["href"])
+        if tag == "a":
+            self.links.append(given["href"])
+        if tag not in ("meta", "link", "img", "br"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text.append(data)
+
+
+def read(path):
+    reader = Reader()
+    reader.feed(path.read_text("utf-8"))
+    reader.close()
+    assert reader.open == []
+    return reader
+
+
+@pytest.fixture
+def figure():
+    fig = Figure()
+    fig.subplots().plot([1, 2], [3, 4])
+    return fig
+
+
+@pytest.fixture
+def whole(tmp_path, lives_table, likelihoods_table, figure):
+    rng = np.random.default_rng(1)
+    cells = [(world, agent) for world in ("abundant", "scarce") for agent in ("BLIND", "AF")]
+    table = lives_table({cell: rng.exponential(900, 60) + 1 for cell in cells}, cap=2000)
+    path = tmp_path / "report.html"
+    sections = [
+        claims_section(judge(table, likelihoods_table(40), resamples=99)),
+        cells_section(summarise(table, resamples=99)),
+        Section("Figures", pictures=[picture(figure, "Figure 1. A line.", "a line")]),
+        Section(
+            "How it was made",
+            paragraphs=["Once."],
+            items=["calibrated: nothing"],
+            terms={"seed": "1"},
+            code="animat reproduce",
+        ),
+    ]
+    write_page(path, "A report", sections, lead=["What was asked."])
+    return path
+
+
+def test_the_page_is_well_formed_and_fetches_nothing(whole):
+    reader = read(whole)
+    assert "script" not in {tag for tag, _ in reader.tags}
+    assert reader.loads
+    assert all(address.startswith("data:") for address in reader.loads)
+    assert all(not any(name.startswith("on") for name in given) for _, given in reader.tags)
+    text = whole.read_text("utf-8")
+    assert "url(" not in text
+    assert "@import" not in text
+
+
+def test_the_contents_lead_to_every_section(whole):
+    reader = read(whole)
+    there = {given["id"] for tag, given in reader.tags if tag == "section"}
+    assert [link for link in reader.links if link.startswith("#")] == [
+        f"#part-{k}" for k in (1, 2, 3, 4)
+    ]
+    assert {link[1:] for link in reader.links} == there
+
+
+def test_everything_that_is_given_is_on_the_page(whole):
+    text = " ".join(read(whole).text)
+    for word in ("A report", "What was asked.", "C1", "C7", "abundant, BLIND", "Figure 1. A line.",
+                 "Once.", "calibrated: nothing", "animat reproduce", "Cañamero", "2003",
+                 "eat TS", "nutrition too low, metabolism", "alive at the cap"):  # fmt: skip
+        assert word in text
+
+
+def test_verdicts_are_marked_as_what_they_are(tmp_path):
+    path = tmp_path / "page.html"
+    rows = [(Badge("holds"),), (Badge("fails"),), (Badge("undecided"),)]
+    write_page(path, "t", [Section("s", tables=[TableBlock(("v",), rows)])])
+    badges = [given["class"] for tag, given in read(path).tags if tag == "span"]
+    assert badges == ["badge holds", "badge fails", "badge undecided"]
+
+
+def test_what_a_user_wrote_cannot_become_markup(tmp_path):
+    path = tmp_path / "page.html"
+    evil = '"><script>alert(1)</script>'
+    section = Section(evil, (evil,), (evil,), {evil: evil},
+                      (TableBlock((evil,), ((evil,),), evil),),
+                      (Picture("png", b"x", evil, evil),), evil)  # fmt: skip
+    write_page(path, evil, [section], lead=[evil])
+    reader = read(path)
+    assert "script" not in {tag for tag, _ in reader.tags}
+    assert "".join(reader.text).count("<script>") == 14
+
+
+def test_a_picture_holds_the_figure(figure, tmp_path):
+    made = picture(figure, "c", "a")
+    head, content = made.address.split(",")
+    assert head == "data:image/svg+xml;base64"
+    assert base64.b64decode(content) == made.content
+    assert b"<svg" in made.content
+    (tmp_path / "f.png").write_bytes(b"png")
+    assert picture_file(tmp_path / "f.png", "c", "a").address == "data:image/png;base64,cG5n"
+
+
+def test_a_heavy_figure_goes_in_as_png(figure, monkeypatch):
+    monkeypatch.setattr(page, "LARGEST_SVG", 10)
+    made = picture(figure, "c", "a")
+    assert made.kind == "png"
+    assert made.content.startswith(b"\x89PNG")
+
+
+def test_intervals_in_words():
+    assert interval(Estimate(2.0, 1.9, 2.126), ".2f") == "2.00 (1.90\u00a0to\u00a02.13)"
+    assert interval(Estimate(120.0, 100.0, float("inf")), ",.0f") == "120 (100\u00a0to\u00a0∞)"
+    assert interval(UNKNOWN, ".2f") == "–"
+
+
+def test_the_same_content_gives_the_same_page(whole, tmp_path, figure):
+    for name in ("one", "two"):
+        write_page(tmp_path / name, "t", [Section("s", pictures=[picture(figure, "c", "a")])])
+    assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
