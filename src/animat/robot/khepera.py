@@ -1,0 +1,175 @@
+"""The Khepera as settings, and the record of numbers that a step reads.
+
+Lengths are in mm, x points forward and y to the left of the robot; settings give directions in
+degrees, counter-clockwise from its front. The figures are those of the Khepera Simulator 2.0
+(Michel 1996).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, Self, cast
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from animat.numerics.elementary import sine_cosine
+
+SENSORS = 8
+RING_POINTS = 8
+
+MICHEL1996, LINEAR = 0, 1
+MODELS = {"michel1996": MICHEL1996, "linear": LINEAR}
+
+LINEAR_REACH = 50.0  # mm
+
+ROBOT = np.dtype(
+    (
+        np.record,
+        np.dtype(
+            [
+                ("radius", np.float64),
+                ("wheel_base", np.float64),
+                ("step_mm", np.float64),
+                ("max_motor", np.int64),
+                ("motor_noise", np.bool_),
+                ("position_noise", np.float64),
+                ("turn_noise", np.float64),
+                ("ring_radius", np.float64),
+                ("ring_x", np.float64, (RING_POINTS,)),
+                ("ring_y", np.float64, (RING_POINTS,)),
+                ("infrared", np.int64),
+                ("infrared_noise", np.bool_),
+                ("sensor_radius", np.float64),
+                ("sensor_x", np.float64, (SENSORS,)),
+                ("sensor_y", np.float64, (SENSORS,)),
+                ("sensor_cosine", np.float64, (SENSORS,)),
+                ("sensor_sine", np.float64, (SENSORS,)),
+            ],
+            align=True,
+        ),
+    )
+)
+"""What a step knows of its robot; `Khepera.parameters` fills it.
+
+`ring_x`, `ring_y` are the collision points in the robot's frame, from the front
+counter-clockwise; `infrared` is MICHEL1996 or LINEAR; `sensor_radius` is how far (mm) the farthest
+sensor is from the centre; the rest are the settings of the same names.
+"""
+
+
+class Sensor(BaseModel):
+    """Where an infrared sensor sits and where it looks."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    x: float = Field(description="mm before the robot's centre")
+    y: float = Field(description="mm to the left of the robot's centre")
+    direction: float = Field(description="degrees, counter-clockwise from the front")
+
+
+class Khepera(BaseModel):
+    """The settings of the robot; the defaults are those of Michel's simulator.
+
+    Raises pydantic's ValidationError for unknown names, wrong types and impossible values.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    radius: float = Field(27.5, gt=0, description="of the body, mm")
+    wheel_base: float = Field(50.0, gt=0, description="distance between the wheels, mm")
+    step_mm: float = Field(0.5, gt=0, description="mm a wheel moves per step and motor unit")
+    max_motor: int = Field(10, ge=1, description="largest motor command, either way")
+    motor_noise: bool = Field(True, description="whether motion is noisy")
+    position_noise: float = Field(
+        0.10, ge=0, lt=1, description="spread of the x and y displacements, as a share of them"
+    )
+    turn_noise: float = Field(0.05, ge=0, lt=1, description="spread of the turn, as a share of it")
+    ring_radius: float = Field(
+        30.0, gt=0, le=40, description="of the eight collision points round the centre, mm"
+    )
+    infrared: Literal["michel1996", "linear"] = Field(
+        "michel1996", description="how the sensors answer to what is before them"
+    )
+    infrared_noise: bool = Field(True, description="whether infrared readings are noisy")
+    sensors: tuple[Sensor, ...] = Field(
+        default=(
+            Sensor(x=9.5, y=23.0, direction=90.0),
+            Sensor(x=18.0, y=17.5, direction=45.0),
+            Sensor(x=24.5, y=5.5, direction=0.0),
+            Sensor(x=24.5, y=-5.5, direction=0.0),
+            Sensor(x=18.0, y=-17.5, direction=-45.0),
+            Sensor(x=9.5, y=-23.0, direction=-90.0),
+            Sensor(x=-23.0, y=-9.5, direction=180.0),
+            Sensor(x=-23.0, y=9.5, direction=180.0),
+        ),
+        strict=False,
+        min_length=SENSORS,
+        max_length=SENSORS,
+        description="the eight infrared sensors, from the left side round the front",
+    )
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        if self.ring_radius < self.radius:
+            raise ValueError(
+                f"ring_radius {self.ring_radius:g} mm lies inside the body: it must be at least "
+                f"the radius, {self.radius:g} mm"
+            )
+        if self.wheel_base > 2 * self.radius:
+            raise ValueError(
+                f"wheel_base {self.wheel_base:g} mm is wider than the body: it must be at most "
+                f"twice the radius, {2 * self.radius:g} mm"
+            )
+        stride = self.step_mm * self.max_motor * (1 + self.position_noise)
+        if stride > self.ring_radius / 2:
+            raise ValueError(
+                f"step_mm x max_motor moves the robot up to {stride:g} mm in one step, so far "
+                f"that it could pass through an object: at most half the ring_radius, "
+                f"{self.ring_radius / 2:g} mm, noise included"
+            )
+        for number, sensor in enumerate(self.sensors):
+            if math.hypot(sensor.x, sensor.y) > self.ring_radius:
+                raise ValueError(
+                    f"sensor {number} at ({sensor.x:g}, {sensor.y:g}) mm lies outside the "
+                    f"collision ring: at most {self.ring_radius:g} mm from the centre"
+                )
+        return self
+
+    def parameters(self) -> np.record:
+        """Return the record of dtype ROBOT that compiled functions read."""
+        robot = np.zeros((), ROBOT)
+        for name in (
+            "radius",
+            "wheel_base",
+            "step_mm",
+            "max_motor",
+            "motor_noise",
+            "position_noise",
+            "turn_noise",
+            "ring_radius",
+            "infrared_noise",
+        ):
+            robot[name] = getattr(self, name)
+        robot["infrared"] = MODELS[self.infrared]
+        robot["sensor_radius"] = max(math.sqrt(s.x * s.x + s.y * s.y) for s in self.sensors)
+        for point in range(RING_POINTS):
+            sine, cosine = _direction(45.0 * point)
+            robot["ring_x"][point] = self.ring_radius * cosine
+            robot["ring_y"][point] = self.ring_radius * sine
+        for number, sensor in enumerate(self.sensors):
+            sine, cosine = _direction(sensor.direction)
+            robot["sensor_x"][number] = sensor.x
+            robot["sensor_y"][number] = sensor.y
+            robot["sensor_cosine"][number] = cosine
+            robot["sensor_sine"][number] = sine
+        return cast(np.record, robot[()])
+
+
+def _direction(degrees: float) -> tuple[float, float]:
+    """Return (sine, cosine) of an angle in degrees, exact for multiples of 90."""
+    quarters = round(degrees / 90.0)
+    sine, cosine = sine_cosine(math.radians(degrees - 90.0 * quarters))
+    for _ in range(quarters % 4):
+        sine, cosine = cosine, -sine
+    return sine, cosine

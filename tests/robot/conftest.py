@@ -1,0 +1,67 @@
+"""Small worlds drawn by shapely, apart from the package's own drawing."""
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pytest
+import shapely
+
+from animat.world.raster import Raster
+
+Drawing = Callable[..., Raster]
+
+SIDE = 300.0
+MARGIN = 20.0
+
+
+def _drawn(polygons: Sequence[shapely.Polygon] = (), resolution: float = 2.0) -> Raster:
+    """Draw polygons (a site each) on a square floor, free from 20 to 280 mm along x and y."""
+    border = math.ceil(100 / resolution)
+    cells = math.ceil(SIDE / resolution) + 2 * border
+    centres = (np.arange(cells) - border + 0.5) * resolution
+    x, y = np.meshgrid(centres, centres)
+    floor = shapely.box(MARGIN, MARGIN, SIDE - MARGIN, SIDE - MARGIN)
+    solid = np.where(shapely.contains_xy(floor, x, y), 0, 1).astype(np.int16)
+    points = shapely.points(x, y)
+    clearance = shapely.distance(floor.boundary, points)
+    for site, polygon in enumerate(polygons):
+        solid[shapely.contains_xy(polygon, x, y) & (solid == 0)] = site + 2
+        clearance = np.minimum(clearance, shapely.distance(polygon.boundary, points))
+    clearance[solid > 0] = 0
+    sites = len(polygons)
+    return Raster(
+        resolution=resolution,
+        border=border,
+        solid=solid,
+        clearance=clearance.astype(np.float32),
+        near_site=np.full((cells, cells, 1), -1, dtype=np.int16),
+        near_distance=np.full((cells, cells, 1), np.inf, dtype=np.float32),
+        site_x=np.zeros(sites),
+        site_y=np.zeros(sites),
+        site_type=np.zeros(sites, dtype=np.int64),
+        features=np.zeros((1, 2)),
+        affords=np.zeros((1, 3)),
+    )
+
+
+def _scattered(seed: int, resolution: float = 2.0, objects: int = 5) -> Raster:
+    """Draw triangles, squares and hexagons at random; they may overlap."""
+    rng = np.random.default_rng(seed)
+    polygons = []
+    for corners in rng.integers(3, 7, objects):
+        centre, radius = rng.uniform(60, 240, 2), rng.uniform(8, 35)
+        angles = rng.uniform(0, math.tau) + math.tau * np.arange(corners) / corners
+        outline = centre + radius * np.column_stack([np.cos(angles), np.sin(angles)])
+        polygons.append(shapely.Polygon(outline))
+    return _drawn(polygons, resolution)
+
+
+@pytest.fixture(scope="session")
+def drawn() -> Drawing:
+    return _drawn
+
+
+@pytest.fixture(scope="session")
+def scattered() -> Drawing:
+    return _scattered
