@@ -65,6 +65,8 @@ def test_occupancy_clearance_and_near_sites_are_shapelys(seed, sites, horizon, r
     arena, outlines, shapes = random_world(seed, sites)
     raster = drawn(arena, outlines, horizon, resolution)
     x, y = centres(raster)
+    assert x.max() + resolution / 2 >= arena.width + BORDER_MM
+    assert y.max() + resolution / 2 >= arena.height + BORDER_MM
     left, right, bottom, top = arena.free
 
     solid = np.where((x > left) & (x < right) & (y > bottom) & (y < top), FREE, WALL)

@@ -117,6 +117,11 @@ def test_spares_are_of_the_types_that_occur_and_leave_the_objects_alone():
     assert with_spares(more, 1, 9, 70.0).spares[:4] == more.spares
 
 
+def test_spares_draw_from_a_stream_of_their_own():
+    objects = dropped({"CS": 2}, 4).placements
+    assert with_spares(dropped({"CS": 1}, 4), 1, 4, 70.0).spares[0] != objects[1]
+
+
 def test_spares_with_a_gap_of_their_own_make_a_valid_layout():
     layout = Layout(placements=(Placement(type="CL", x=500, y=500),))
     more = with_spares(layout, 20, 1, 30.0)
