@@ -12,6 +12,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.life.sight import row_and_column
 from animat.life.state import NO_SITE, state_dtype
 from animat.mind.mind import Mind
 from animat.numerics.compiled import compiled, kernel
@@ -37,12 +38,17 @@ def place(states, present, lives, robot, raster, seed, width, height):
 
 @compiled
 def find_pose(state, present, robot, raster, seed, life, width, height):
-    """Set the pose to the first clear one of those the stream START offers."""
+    """Set the pose to the first clear one of those the stream START offers.
+
+    Clear is a pose in which no ring point is hit, and nothing small stands within the ring either.
+    """
     for attempt in range(ATTEMPTS):
         u_x, u_y, u_heading, _ = uniforms(seed, life, START, attempt)
         x = START_MARGIN + u_x * (width - 2.0 * START_MARGIN)
         y = START_MARGIN + u_y * (height - 2.0 * START_MARGIN)
         heading = math.pi - u_heading * 2.0 * math.pi
+        if raster.clearance[row_and_column(x, y, raster)] < robot.ring_radius:
+            continue
         if touched(x, y, heading, robot, raster, present) == CLEAR:
             state.x = x
             state.y = y

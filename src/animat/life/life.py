@@ -93,9 +93,9 @@ class Life:
         """
         if self.trace is None:
             raise LifeError('this life was not recorded: live it with record="all"')
-        from animat.report.figures.life import life_figure
+        from animat.life.drawing import draw_life
 
-        return life_figure(self)
+        return draw_life(self)
 
 
 @dataclass(frozen=True)
@@ -147,7 +147,7 @@ def live(
         table(part, mind, world)
         for part in lived(setting, states, present, seed, life, steps, recording, progress)
     ]
-    trace = pa.concat_tables(rows, promote_options="none") if recording else None
+    trace = pa.concat_tables(rows).unify_dictionaries() if recording else None
     return Life(setting, seed, life, states[0], trace)
 
 

@@ -12,11 +12,12 @@ from animat.mind.functions import Functions
 from animat.mind.mind import Mind
 from animat.mind.parameters import parameters
 from animat.robot.khepera import Khepera
+from animat.settings import SettingsError
 from animat.world.raster import Raster
 from animat.world.world import World
 
 
-class LifeError(ValueError):
+class LifeError(SettingsError):
     """Mind, robot and world do not go together, or a life was asked for that cannot be lived."""
 
 

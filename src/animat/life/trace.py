@@ -89,7 +89,7 @@ def table(rows: NDArray[np.void], mind: Mind, world: World) -> pa.Table:
 def _names(codes: NDArray[np.int64], names: list[str]) -> pa.Array:
     """Return the names of codes as a dictionary column; null for a negative code."""
     indices = pa.array(codes, mask=codes < 0, type=pa.int32())
-    return pa.DictionaryArray.from_arrays(indices, pa.array(names))
+    return pa.DictionaryArray.from_arrays(indices, pa.array(names, pa.string()))
 
 
 def _behaviour_names(rows: NDArray[np.void], behaviours: list[str]) -> pa.Array:

@@ -17,12 +17,14 @@ from __future__ import annotations
 
 import hashlib
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+from numba.core.event import Event, Listener, install_listener
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -81,3 +83,25 @@ def _identity(function: Callable[..., Any]) -> str | None:
         if isinstance(value, PLAIN):
             digest.update(f"{name}={value!r}".encode())
     return f"{function.__module__}.{function.__qualname__}:{digest.hexdigest()}"
+
+
+class _Once(Listener):
+    """Call a function at the first event."""
+
+    def __init__(self, tell: Callable[[], None]) -> None:
+        self.tell: Callable[[], None] | None = tell
+
+    def on_start(self, event: Event) -> None:
+        tell, self.tell = self.tell, None
+        if tell:
+            tell()
+
+    def on_end(self, event: Event) -> None:
+        pass
+
+
+@contextmanager
+def announcing(tell: Callable[[], None]) -> Iterator[None]:
+    """Call `tell` once if something is compiled meanwhile, rather than read from disk."""
+    with install_listener("numba:compile", _Once(tell)):
+        yield

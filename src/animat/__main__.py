@@ -1,0 +1,5 @@
+"""`python -m animat` is the command line."""
+
+from animat.cli import main
+
+main()

@@ -1,0 +1,39 @@
+"""What the networks of robots say of every object type of a world."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from animat.life.setting import Setting
+from animat.mind import affordance
+from animat.numerics.compiled import kernel
+
+
+def likelihoods(setting: Setting, states: NDArray[np.void]) -> NDArray[np.float64]:
+    """Return the likelihoods [L, B, T] of L lives, by behaviour and object type."""
+    types = setting.raster.features.shape[0]
+    behaviours = len(setting.mind.behaviours)
+    said = np.zeros((len(states), behaviours, types))
+    _ask(states, setting.mind_parameters, setting.raster.features, setting.functions, said)
+    return said
+
+
+def afforded(setting: Setting) -> NDArray[np.float64]:
+    """Return the truth [B, T]: Table 1's probabilities, by behaviour and object type."""
+    return setting.raster.affords.T[setting.mind_parameters.needs]
+
+
+@kernel
+def _ask(states, mind, features, functions, said):
+    for n in range(len(states)):
+        state = states[n]
+        for b in range(said.shape[1]):
+            for t in range(said.shape[2]):
+                said[n, b, t] = affordance.estimate(
+                    mind.estimator,
+                    features[t],
+                    state.weights[b],
+                    state.hidden,
+                    functions.estimator,
+                )
