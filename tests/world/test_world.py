@@ -17,7 +17,7 @@ SMALL = Arena(width=400, height=400)
 
 def test_the_papers_worlds_share_an_arena_and_world_2_has_fewer_objects():
     abundant, scarce = World.abundant(), World.scarce()
-    assert (abundant.name, scarce.name) == ("World 1", "World 2")
+    assert (abundant.name, scarce.name) == ("abundant", "scarce")
     assert abundant.arena == scarce.arena == Arena()
     assert abundant.types == scarce.types == TABLE_1
     assert scarce.n_objects < abundant.n_objects
