@@ -11,9 +11,10 @@ import math
 from typing import Literal, Self, cast
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from animat.numerics.elementary import sine_cosine
+from animat.settings import Settings
 
 SENSORS = 8
 RING_POINTS = 8
@@ -58,23 +59,19 @@ sensor is from the centre; the rest are the settings of the same names.
 """
 
 
-class Sensor(BaseModel):
+class Sensor(Settings):
     """Where an infrared sensor sits and where it looks."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
     x: float = Field(description="mm before the robot's centre")
     y: float = Field(description="mm to the left of the robot's centre")
     direction: float = Field(description="degrees, counter-clockwise from the front")
 
 
-class Khepera(BaseModel):
+class Khepera(Settings):
     """The settings of the robot; the defaults are those of Michel's simulator.
 
     Raises pydantic's ValidationError for unknown names, wrong types and impossible values.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
     radius: float = Field(27.5, gt=0, description="of the body, mm")
     wheel_base: float = Field(50.0, gt=0, description="distance between the wheels, mm")
@@ -111,29 +108,32 @@ class Khepera(BaseModel):
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
+        problems = []
         if self.ring_radius < self.radius:
-            raise ValueError(
+            problems.append(
                 f"ring_radius {self.ring_radius:g} mm lies inside the body: it must be at least "
                 f"the radius, {self.radius:g} mm"
             )
         if self.wheel_base > 2 * self.radius:
-            raise ValueError(
+            problems.append(
                 f"wheel_base {self.wheel_base:g} mm is wider than the body: it must be at most "
                 f"twice the radius, {2 * self.radius:g} mm"
             )
         stride = self.step_mm * self.max_motor * (1 + self.position_noise)
         if stride > self.ring_radius / 2:
-            raise ValueError(
+            problems.append(
                 f"step_mm x max_motor moves the robot up to {stride:g} mm in one step, so far "
-                f"that it could pass through an object: at most half the ring_radius, "
+                f"that it could pass through an object: it must be at most half the ring_radius, "
                 f"{self.ring_radius / 2:g} mm, noise included"
             )
         for number, sensor in enumerate(self.sensors):
             if math.hypot(sensor.x, sensor.y) > self.ring_radius:
-                raise ValueError(
+                problems.append(
                     f"sensor {number} at ({sensor.x:g}, {sensor.y:g}) mm lies outside the "
-                    f"collision ring: at most {self.ring_radius:g} mm from the centre"
+                    f"collision ring: it must be at most {self.ring_radius:g} mm from the centre"
                 )
+        if problems:
+            raise ValueError("\n".join(problems))
         return self
 
     def parameters(self) -> np.record:
