@@ -124,6 +124,10 @@ CASES: dict[str, tuple[dict[str, Any], list[str]]] = {
     ),
     "a long value": ({"wheels": "x" * 100}, [f'key wheels = "{"x" * 56}...: must be a list']),
     "a value of many lines": ({"wheels": "a\nb"}, ['key wheels = "a\\nb": must be a list']),
+    "a value a terminal would obey": (
+        {"wheels": "\x1b[2J\x9b\u202e"},
+        ['key wheels = "\\u001b[2J\\x9b\\u202e": must be a list'],
+    ),
     "an object of many lines": ({"name": range(2)}, ["key name = range(0, 2): must be a string"]),
 }
 

@@ -193,10 +193,12 @@ def _shown(value: Any) -> str:
 
 
 def _plain(value: Any) -> str:
-    """Return a value as TOML writes it, on one line."""
+    """Return a value as TOML writes it, on one line and without what a terminal would obey."""
     if isinstance(value, bool | str):
-        return json.dumps(value, ensure_ascii=False)
-    return " ".join(str(value).split())
+        text = json.dumps(value, ensure_ascii=False)
+    else:
+        text = " ".join(str(value).split())
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 def _options(annotation: Any) -> list[Any]:
