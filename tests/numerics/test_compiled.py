@@ -1,0 +1,182 @@
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import animat
+from animat.numerics.compiled import compiled, kernel
+
+HELPER = """
+from animat.numerics.compiled import compiled
+
+SHIFT = 100.0
+
+@compiled
+def doubled(x):
+    return 2.0 * x
+"""
+
+ENGINE = """
+from animat.helper import SHIFT, doubled
+from animat.numerics.compiled import compiled, kernel
+
+@compiled
+def law(x):
+    return doubled(x) + SHIFT
+
+@kernel
+def run(x, own):
+    return law(x) + own(x)
+"""
+
+OWN = """
+from animat.numerics.compiled import compiled
+
+@compiled
+def part(x):
+    return 7.0 * x
+
+@compiled
+def own(x):
+    return part(x) + 1.0
+
+def made(gain):
+    @compiled
+    def scaled(x):
+        return gain * x
+    return scaled
+"""
+
+# Runs the kernel and says what came out and which functions were compiled on the way.
+CHILD = """
+import json, sys
+from numba.core import event
+
+names = []
+
+class Compilations(event.Listener):
+    def on_start(self, event):
+        names.append(event.data["dispatcher"].__name__)
+    def on_end(self, event):
+        pass
+
+with event.install_listener("numba:compile", Compilations()):
+    import mine
+    from animat.engine import run
+    own = eval(sys.argv[1], vars(mine))
+    print(json.dumps({"result": run(float(sys.argv[2]), own), "compiled": names}))
+"""
+
+
+class Laboratory:
+    """A copy of the package with an engine of its own, and a user's file beside it."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+        self.package = folder / "animat"
+        numerics = Path(animat.__file__).parent / "numerics"
+        shutil.copytree(
+            numerics, self.package / "numerics", ignore=shutil.ignore_patterns("__pycache__")
+        )
+        (self.package / "__init__.py").write_text("")
+        (self.package / "helper.py").write_text(HELPER)
+        (self.package / "engine.py").write_text(ENGINE)
+        (folder / "mine.py").write_text(OWN)
+
+    def run(self, own="own", x=1.0, **settings):
+        """Run in a process of its own; return the result and the names of what it compiled."""
+        environment = {
+            **os.environ,
+            "PYTHONPATH": str(self.folder),
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "NUMBA_CACHE_DIR": str(self.folder / "cache"),
+            **settings,
+        }
+        command = [sys.executable, "-W", "error", "-c", CHILD, own, str(x)]
+        ran = subprocess.run(
+            command, env=environment, cwd=self.folder, capture_output=True, text=True, check=False
+        )
+        assert ran.returncode == 0, ran.stderr
+        said = json.loads(ran.stdout)
+        return said["result"], said["compiled"]
+
+    def edit(self, name, old, new):
+        """Change a source file so that neither its length nor its time of change tells."""
+        path = self.folder / name
+        before = path.stat()
+        text = path.read_text()
+        assert text.count(old) == 1
+        assert len(old) == len(new)
+        path.write_text(text.replace(old, new))
+        os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+
+
+@pytest.fixture
+def laboratory(tmp_path):
+    return Laboratory(tmp_path)
+
+
+EDITS = [
+    # file, what stands there, what comes instead, the kernel's result from then on
+    ("animat/helper.py", "2.0 * x", "3.0 * x", 111),
+    ("animat/helper.py", "SHIFT = 100.0", "SHIFT = 200.0", 211),
+    ("animat/engine.py", "law(x) + own(x)", "law(x) - own(x)", 195),
+    ("mine.py", "+ 1.0", "+ 5.0", 191),
+    ("mine.py", "7.0 * x", "8.0 * x", 190),
+]
+
+
+def test_only_a_changed_source_is_compiled_in_a_second_process(laboratory):
+    result, names = laboratory.run()
+    assert result == 110
+    assert set(names) == {"run", "law", "doubled", "own", "part"}
+    assert laboratory.run(x=2.0) == (119, [])
+    for file, old, new, expected in EDITS:
+        laboratory.edit(file, old, new)
+        result, names = laboratory.run()
+        assert result == expected, (file, new)
+        assert "run" in names
+    assert laboratory.run() == (190, [])
+
+
+def test_functions_made_by_one_function_are_told_apart(laboratory):
+    assert laboratory.run("made(3.0)")[0] == 105
+    result, names = laboratory.run("made(4.0)")
+    assert result == 106
+    assert "run" in names
+    assert laboratory.run("made(3.0)") == (105, [])
+
+
+def test_uncompiled_nothing_is_compiled(laboratory):
+    assert laboratory.run(NUMBA_DISABLE_JIT="1") == (110, [])
+    assert not (laboratory.folder / "cache").exists()
+
+
+@compiled
+def quotient(a, b):
+    return a / b
+
+
+@kernel
+def quotient_of_sum(a, b, c):
+    return quotient(a + b, c)
+
+
+def test_no_step_raises():
+    assert quotient_of_sum(1.0, 2.0, 4.0) == 0.75
+    assert quotient_of_sum(1.0, 2.0, 0.0) == math.inf
+
+
+@kernel
+def there_and_back(small, large):
+    return (small + large) - large
+
+
+def test_sums_keep_their_order():
+    """Fast maths would let the large terms cancel and the small one survive."""
+    assert there_and_back(1.0, 1e300) == 0.0
