@@ -34,12 +34,28 @@ def run(x, own):
     return law(x) + own(x)
 """
 
-OWN = """
+THEIRS = """
 from animat.numerics.compiled import compiled
+
+STEEPNESS = (7.0, 0.0)
 
 @compiled
 def part(x):
     return 7.0 * x
+
+@compiled
+def whole(x):
+    return 0.0 * x
+"""
+
+OWN = """
+from animat.numerics.compiled import compiled
+import theirs
+from theirs import STEEPNESS, part
+
+@compiled
+def other(x):
+    return 1.0 + STEEPNESS[0] * x + theirs.whole(x)
 
 @compiled
 def own(x):
@@ -74,7 +90,7 @@ with event.install_listener("numba:compile", Compilations()):
 
 
 class Laboratory:
-    """A copy of the package with an engine of its own, and a user's file beside it."""
+    """A copy of the package with an engine of its own, and a user's files beside it."""
 
     def __init__(self, folder: Path):
         self.folder = folder
@@ -87,6 +103,7 @@ class Laboratory:
         (self.package / "helper.py").write_text(HELPER)
         (self.package / "engine.py").write_text(ENGINE)
         (folder / "mine.py").write_text(OWN)
+        (folder / "theirs.py").write_text(THEIRS)
 
     def run(self, own="own", x=1.0, **settings):
         """Run in a process of its own; return the result and the names of what it compiled."""
@@ -127,7 +144,7 @@ EDITS = [
     ("animat/helper.py", "SHIFT = 100.0", "SHIFT = 200.0", 211),
     ("animat/engine.py", "law(x) + own(x)", "law(x) - own(x)", 195),
     ("mine.py", "+ 1.0", "+ 5.0", 191),
-    ("mine.py", "7.0 * x", "8.0 * x", 190),
+    ("theirs.py", "7.0 * x", "8.0 * x", 190),
 ]
 
 
@@ -142,6 +159,15 @@ def test_only_a_changed_source_is_compiled_in_a_second_process(laboratory):
         assert result == expected, (file, new)
         assert "run" in names
     assert laboratory.run() == (190, [])
+
+
+def test_what_a_user_s_file_imports_is_not_overlooked(laboratory):
+    assert laboratory.run("other")[0] == 110
+    laboratory.edit("theirs.py", "STEEPNESS = (7.0", "STEEPNESS = (9.0")
+    assert laboratory.run("other")[0] == 112
+    laboratory.edit("theirs.py", "0.0 * x", "5.0 * x")
+    assert laboratory.run("other")[0] == 117
+    assert laboratory.run("other") == (117, [])
 
 
 def test_functions_made_by_one_function_are_told_apart(laboratory):

@@ -10,7 +10,9 @@ made of its name and its source, and a cached kernel is stamped with the source 
 package.
 
 Bits: no fast maths and no contraction to fused multiply-add, so that a result does not depend on
-the processor; NumPy's error model, so that no step can raise.
+the processor; NumPy's error model, so that no step can raise. No run-time for memory, so that nothing
+in a step can allocate: a function that tries does not compile. Everything is inlined into its
+kernel: handing a world's arrays from function to function by value costs more than the step.
 """
 
 from __future__ import annotations
@@ -21,9 +23,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 from typing import Any, TypeVar
 
 import numba
+import numpy as np
+from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, install_listener
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -40,7 +45,7 @@ def compiled(function: Function) -> Function:
 
 def kernel(function: Function) -> Function:
     """Compile a function that Python calls, and keep its machine code on disk."""
-    dispatcher = numba.njit(cache=True, **OPTIONS)(function)
+    dispatcher: Any = numba.njit(cache=True, **OPTIONS)(function)
     if dispatcher is not function:
         dispatcher._cache._cache_file._source_stamp = package_stamp()
     return _identified(dispatcher, function)
@@ -68,8 +73,9 @@ def _identified(dispatcher: Any, function: Callable[..., Any]) -> Any:
 def _identity(function: Callable[..., Any]) -> str | None:
     """Return a text that is equal only for functions that compute the same, or None.
 
-    It covers the whole source file, for what the function calls there, and the plain values the
-    function takes from around it. None if it takes something else from an enclosing function.
+    It covers the whole source file, for what the function calls there, the compiled functions that
+    the file imports, and the plain values the function takes from around it. None if it takes
+    something else from an enclosing function.
     """
     digest = hashlib.sha256(function.__code__.co_code)
     source = Path(inspect.getsourcefile(function) or "")
@@ -78,11 +84,24 @@ def _identity(function: Callable[..., Any]) -> str | None:
         if not isinstance(cell.cell_contents, PLAIN):
             return None
         digest.update(repr(cell.cell_contents).encode())
-    for name in function.__code__.co_names:
-        value = function.__globals__.get(name)
-        if isinstance(value, PLAIN):
+    for name, value in _taken(function):
+        if isinstance(value, Dispatcher):
+            digest.update(f"{name}={value._uuid}".encode())
+        elif isinstance(value, (*PLAIN, tuple, np.generic)):
             digest.update(f"{name}={value!r}".encode())
     return f"{function.__module__}.{function.__qualname__}:{digest.hexdigest()}"
+
+
+def _taken(function: Callable[..., Any]) -> Iterator[tuple[str, Any]]:
+    """Yield what a function may take from its module and from the modules that one imports."""
+    names = function.__code__.co_names
+    # A copy, because another thread may be importing.
+    for name, value in dict(function.__globals__).items():
+        if name in names or isinstance(value, Dispatcher):
+            yield name, value
+        if name in names and isinstance(value, ModuleType):
+            for inner in names:
+                yield f"{name}.{inner}", getattr(value, inner, None)
 
 
 class _Once(Listener):
