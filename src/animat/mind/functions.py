@@ -13,9 +13,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numba
+from numba import types
+from numba.core.dispatcher import Dispatcher
 
 from animat.numerics.compiled import compiled
+from animat.settings import SettingsError
 
 SIGNATURES = {
     "law": "law(value, low, high, rate, factor) -> value",
@@ -28,8 +30,26 @@ SIGNATURES = {
 }
 """What each replaceable function looks like; the module that holds the built-in ones says more."""
 
+REAL, WHOLE = types.float64, types.int64
+REALS, WHOLES = types.Array(REAL, 1, "C"), types.Array(WHOLE, 1, "C")
+TABLE = types.Array(REAL, 2, "C")
 
-class FunctionError(ValueError):
+ARGUMENTS = {
+    "law": (REAL,) * 5,
+    "drives": (REALS, REALS, REALS, REALS, TABLE, TABLE, REALS),
+    "selector": (REALS, REALS, WHOLES, REAL),
+    "estimator": (REALS, REALS, REALS),
+    "learner": (REALS, REALS, REALS, REAL, REAL, WHOLE, types.boolean),
+    "wander": (WHOLES, REALS, REALS, REALS, REAL, REAL, WHOLE, WHOLE),
+}
+"""What the step hands to each replaceable function."""
+
+
+ALLOCATION = ("NRT required", "Only accept returning of array")
+"""What the compiler says of a function that needs memory of its own."""
+
+
+class FunctionError(SettingsError):
     """A user's function cannot be found, has the wrong signature or does not compile."""
 
 
@@ -86,14 +106,18 @@ BUILT_IN = Functions(
 def resolve(role: str, function: str | Callable[..., Any]) -> Any:
     """Return the compiled form of a user's function for a role of `SIGNATURES`.
 
-    `function` is a Python function, or a text "FILE.py:NAME". Raises FunctionError.
+    `function` is a Python function, or a text "FILE.py:NAME". It is compiled alone first, because
+    the compiler says far less clearly what is wrong with it in the midst of a step. Raises
+    FunctionError.
     """
-    if isinstance(function, str):
-        function = _load(role, function)
-    if isinstance(function, numba.core.dispatcher.Dispatcher):
-        function = function.py_func
-    _check_signature(role, function)
-    return compiled(function)
+    own: Any = _load(role, function) if isinstance(function, str) else function
+    if isinstance(own, Dispatcher):
+        own = own.py_func
+    _check_signature(role, own)
+    dispatcher = compiled(own)
+    if isinstance(dispatcher, Dispatcher):
+        _check_compiles(role, dispatcher)
+    return dispatcher
 
 
 def _load(role: str, address: str) -> Callable[..., Any]:
@@ -110,8 +134,8 @@ def _load(role: str, address: str) -> Callable[..., Any]:
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
-        raise FunctionError(f"{role}: {path} does not run: {error}") from error
+    except (Exception, SystemExit) as error:
+        raise FunctionError(f"{role}: {path} does not run: {_one_line(error)}") from error
     found = getattr(module, name, None)
     if not callable(found):
         raise FunctionError(f'{role}: {path} has no function "{name}"; wanted {SIGNATURES[role]}')
@@ -121,12 +145,56 @@ def _load(role: str, address: str) -> Callable[..., Any]:
 def _check_signature(role: str, function: Callable[..., Any]) -> None:
     signature = SIGNATURES[role]
     wanted = signature[signature.index("(") + 1 : signature.index(")")].split(", ")
-    name = getattr(function, "__name__", str(function))
-    try:
-        given = list(inspect.signature(function).parameters)
-    except (TypeError, ValueError) as error:
-        raise FunctionError(f"{role}: {name} is not a Python function") from error
-    if len(given) != len(wanted):
+    if not inspect.isfunction(function):
+        name = getattr(function, "__name__", repr(function))
+        raise FunctionError(f"{role}: {name} is not a Python function; wanted {signature}")
+    given = inspect.signature(function)
+    one_by_one = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    if len(given.parameters) != len(wanted) or any(
+        parameter.kind not in one_by_one for parameter in given.parameters.values()
+    ):
         raise FunctionError(
-            f"{role}: {name}({', '.join(given)}) takes {len(given)} arguments; wanted {signature}"
+            f"{role}: {function.__name__}{given} has other arguments; wanted {signature}"
         )
+
+
+def _check_compiles(role: str, dispatcher: Any) -> None:
+    name = dispatcher.__name__
+    try:
+        dispatcher.compile(ARGUMENTS[role])
+    except Exception as error:
+        raise FunctionError(
+            f"{role}: {name} does not compile: {_why(error)}; wanted {SIGNATURES[role]}"
+        ) from error
+    result = dispatcher.overloads[ARGUMENTS[role]].signature.return_type
+    if not _suits(role, result):
+        raise FunctionError(f"{role}: {name} returns {result}; wanted {SIGNATURES[role]}")
+
+
+def _suits(role: str, result: types.Type) -> bool:
+    """Tell whether a role can do with a function that returns a value of this type."""
+    if role in {"drives", "learner"}:
+        return isinstance(result, types.NoneType)
+    if role == "selector":
+        return types.unliteral(result) in types.signed_domain
+    if role == "wander":
+        each = getattr(result, "types", ())
+        return len(each) == 2 and all(_is_number(one) for one in each)
+    return _is_number(result)
+
+
+def _is_number(result: types.Type) -> bool:
+    return isinstance(result, types.Integer | types.Float)
+
+
+def _why(error: Exception) -> str:
+    """Return what the compiler has against a function, on one line."""
+    if any(sign in str(error) for sign in ALLOCATION):
+        return "it makes a new array, list or other object, for which a step has no room"
+    lines = [line.strip() for line in str(error).splitlines()]
+    telling = [line for line in lines if line and not line.startswith("Failed in nopython mode")]
+    return " ".join(telling[:1]) or type(error).__name__
+
+
+def _one_line(error: BaseException) -> str:
+    return " ".join(f"{type(error).__name__}: {error}".split())
