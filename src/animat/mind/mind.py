@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, field_validator, model_validator
+from pydantic import ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from animat.mind.affordance import weight_count
 from animat.mind.agents import AGENTS, Agent
@@ -13,7 +13,7 @@ from animat.mind.functions import BUILT_IN, Functions, resolve
 from animat.mind.networks import Networks
 from animat.mind.parameters import ESTIMATORS, LAWS, LEARNERS, SELECTORS, WANDERERS
 from animat.mind.physiology import PHYSIOLOGIES, Kind, Variable
-from animat.settings import Settings, nearest
+from animat.settings import Settings, explain, nearest
 
 Unit = Annotated[float, Field(ge=0.0, le=1.0)]
 Effects = dict[str, float]
@@ -65,6 +65,16 @@ class Learning(Settings):
     threshold: Annotated[float, Field(ge=0.0)] = 0.05
     estimator: Function = "feed_forward"
     learner: Function = "back_propagation"
+
+    @field_validator("estimator")
+    @classmethod
+    def _known_estimator(cls, value: Function) -> Function:
+        return _known("estimator", value, ESTIMATORS)
+
+    @field_validator("learner")
+    @classmethod
+    def _known_learner(cls, value: Function) -> Function:
+        return _known("learner", value, LEARNERS)
 
 
 class Mind(Settings):
@@ -123,29 +133,21 @@ class Mind(Settings):
     def _known_wander(cls, value: Function) -> Function:
         return _known("wander", value, WANDERERS)
 
+    @field_validator("drive_function")
+    @classmethod
+    def _known_drive_function(cls, value: Function | None) -> Function | None:
+        return _known("drive function", value, {})
+
     @model_validator(mode="after")
     def _consistent(self) -> Mind:
         variables = self.resolved_variables()
-        problems = []
-        for name, drive in self.drives.items():
-            for watched in (*drive.a, *drive.b):
-                if watched not in variables:
-                    problems.append(
-                        f'drives.{name} watches "{watched}", which is no variable'
-                        f"{nearest(watched, variables)}"
-                    )
-        for name, behaviour in self.behaviours.items():
-            if behaviour.serves not in self.drives:
-                problems.append(
-                    f'behaviours.{name}.serves = "{behaviour.serves}" is no drive'
-                    f"{nearest(behaviour.serves, self.drives)}"
-                )
-            for moved in (*(behaviour.success or ()), *(behaviour.failure or ())):
-                if moved not in variables:
-                    problems.append(
-                        f'behaviours.{name} moves "{moved}", which is no variable'
-                        f"{nearest(moved, variables)}"
-                    )
+        problems = _unknown_names(self, variables)
+        own_laws = _own_laws(variables)
+        if len(set(own_laws.values())) > 1:
+            problems.append(
+                f"variables {', '.join(own_laws)} follow different laws of your own;"
+                " one function must serve them all"
+            )
         if not self.drives or not self.behaviours:
             problems.append("a mind needs at least one drive and one behaviour")
         if self.contact_range > self.encounter_range:
@@ -156,7 +158,7 @@ class Mind(Settings):
         if self.networks is not None:
             problems += _misfit(self.networks, self)
         if problems:
-            raise ValueError("; ".join(problems))
+            raise ValueError("\n".join(problems))
         return self
 
     @property
@@ -172,9 +174,10 @@ class Mind(Settings):
     def resolved_variables(self) -> dict[str, Variable]:
         """Return the variables by name: the physiology's, changed and added to by `variables`.
 
-        Raises ValueError where a changed variable is impossible.
+        Raises ValueError, with a line for each mistake, where a changed variable is impossible.
         """
         resolved = dict(PHYSIOLOGIES[self.physiology])
+        problems: list[str] = []
         if self.lethal_margin is not None:
             changes = {"lethal_margin": self.lethal_margin}
             for name, variable in resolved.items():
@@ -185,26 +188,24 @@ class Mind(Settings):
             if change.law is not None and change.kind is None:
                 settings.pop("kind", None)
             settings.update({k: v for k, v in dict(change).items() if v is not None})
+            if not settings.keys() >= {"law", "rate", "set_point"}:
+                problems.append(
+                    f"variables.{name}: a new variable must give law, rate and set_point"
+                    f"{nearest(name, PHYSIOLOGIES[self.physiology])}"
+                )
+                continue
             try:
                 resolved[name] = Variable(**settings)
-            except ValueError as error:
-                raise ValueError(f"variables.{name}: {_first_line(error)}") from error
+            except ValidationError as error:
+                problems += explain(error, Variable, f"variables.{name}").problems
+        if problems:
+            raise ValueError("\n".join(problems))
         return resolved
 
     def functions(self) -> Functions:
         """Return the user's own functions, compiled. Raises FunctionError."""
         chosen: dict[str, Any] = {}
-        laws = {
-            name: variable.law
-            for name, variable in self.resolved_variables().items()
-            if variable.law not in LAWS
-        }
-        if len(set(laws.values())) > 1:
-            raise ValueError(
-                f"variables {', '.join(laws)} follow different laws of your own;"
-                " one function must serve them all"
-            )
-        for law in laws.values():
+        for law in set(_own_laws(self.resolved_variables()).values()):
             chosen["law"] = resolve("law", law)
         if self.drive_function is not None:
             chosen["drives"] = resolve("drives", self.drive_function)
@@ -226,8 +227,40 @@ class Mind(Settings):
 def _known(role: str, value: Any, known: dict[Any, int]) -> Any:
     """Let through a built-in name, a function, or FILE.py:NAME."""
     if isinstance(value, str) and value not in known and ".py:" not in value:
-        raise ValueError(f'"{value}" is no {role}{nearest(value, known)}, nor FILE.py:NAME')
+        raise ValueError(f'"{value}" is no {role}, nor FILE.py:NAME{nearest(value, known)}')
     return value
+
+
+def _unknown_names(mind: Mind, variables: dict[str, Variable]) -> list[str]:
+    """Tell of drives and behaviours that name what there is not."""
+    problems: list[str] = []
+    for name, drive in mind.drives.items():
+        if not drive.a and not drive.b:
+            problems.append(f"drives.{name} watches no variable")
+        for watched in (*drive.a, *drive.b):
+            if watched not in variables:
+                problems.append(
+                    f'drives.{name} watches "{watched}", which is no variable'
+                    f"{nearest(watched, variables)}"
+                )
+    for name, behaviour in mind.behaviours.items():
+        if behaviour.serves not in mind.drives:
+            problems.append(
+                f'behaviours.{name}.serves = "{behaviour.serves}" is no drive'
+                f"{nearest(behaviour.serves, mind.drives)}"
+            )
+        for moved in (*(behaviour.success or ()), *(behaviour.failure or ())):
+            if moved not in variables:
+                problems.append(
+                    f'behaviours.{name} moves "{moved}", which is no variable'
+                    f"{nearest(moved, variables)}"
+                )
+    return problems
+
+
+def _own_laws(variables: dict[str, Variable]) -> dict[str, Function]:
+    """Return the laws of the user's own, by the variable that follows them."""
+    return {name: each.law for name, each in variables.items() if each.law not in LAWS}
 
 
 def _misfit(networks: Networks, mind: Mind) -> list[str]:
@@ -239,8 +272,3 @@ def _misfit(networks: Networks, mind: Mind) -> list[str]:
             f" learning.hidden_units = {mind.learning.hidden_units}"
         ]
     return []
-
-
-def _first_line(error: ValueError) -> str:
-    errors = getattr(error, "errors", None)
-    return "; ".join(str(e["msg"]) for e in errors()) if errors else str(error)

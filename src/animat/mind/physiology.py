@@ -12,12 +12,15 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from animat.settings import Settings
+from animat.settings import Settings, nearest
 
 Kind = Literal["deficit", "excess"]
 
 FALLING: dict[str, Kind] = {"decay": "deficit", "relax": "excess", "growth": "excess"}
 """The kind that each law implies; `linear` and a user's own law go either way."""
+
+BY_NAME = (*FALLING, "linear")
+"""The laws that are built in."""
 
 
 class Variable(Settings):
@@ -52,6 +55,10 @@ class Variable(Settings):
                 )
         if self.lethal_margin >= self.high - self.low:
             raise ValueError(f"lethal_margin = {self.lethal_margin} leaves no viability zone")
+        if isinstance(self.law, str) and self.law not in BY_NAME and ".py:" not in self.law:
+            raise ValueError(
+                f'law = "{self.law}" is no law, nor FILE.py:NAME{nearest(self.law, BY_NAME)}'
+            )
         implied = FALLING.get(self.law) if isinstance(self.law, str) else None
         if implied and self.kind not in {None, implied}:
             raise ValueError(f'kind = "{self.kind}" contradicts law = "{self.law}" ({implied})')
