@@ -225,11 +225,16 @@ def test_learning_shows_the_mean_of_every_network_and_object(likelihoods_table, 
     assert parts["eat TL"].ours == pytest.approx(0.05)
 
 
-@pytest.mark.parametrize("fault", ["a row lacks", "a row twice", "none"])
+@pytest.mark.parametrize("fault", ["a row lacks", "a row twice", "twice for another", "none"])
 def test_likelihoods_that_lack_something_are_refused(likelihoods_table, fault):
     table = likelihoods_table(3)
     rows = list(range(table.num_rows))
-    rows = {"a row lacks": rows[:-1], "a row twice": [*rows[:-1], 0], "none": []}[fault]
+    rows = {
+        "a row lacks": rows[:-1],
+        "a row twice": [*rows, 0],
+        "twice for another": [*rows[:-1], rows[-2]],
+        "none": [],
+    }[fault]
     with pytest.raises(ValueError, match=r"one likelihood|empty"):
         judge_learning(table.take(pa.array(rows, pa.int64())))
 

@@ -176,6 +176,12 @@ def test_the_success_rate_of_lives_that_hang_together_is_less_sure_than_of_singl
     assert got.high - got.low > 3 * alone
 
 
+def test_busy_and_idle_lives_that_succeed_alike_leave_no_doubt():
+    acts = np.arange(0, 400, 10)
+    got = success_rate(pa.table({"acts": acts, "successes": acts // 2}))
+    assert got == pytest.approx((0.5, 0.5, 0.5))
+
+
 def test_the_success_rate_of_those_who_never_acted_is_unknown():
     assert np.isnan(success_rate(pa.table({"acts": [0, 0], "successes": [0, 0]}))).all()
 

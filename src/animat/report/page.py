@@ -118,7 +118,7 @@ def claims_section(claims: Sequence[Claim], title: str = "The paper's claims") -
                 for claim in claims
             ],
             f"Intervals at {LEVEL:.0%}. A claim holds if the whole interval agrees with it, fails "
-            "if the whole interval contradicts it, and is undecided if the interval does both.",
+            "if the whole interval contradicts it, and is undecided otherwise.",
         )
     ]
     parts = [(claim.id, part) for claim in claims for part in claim.parts]

@@ -62,10 +62,11 @@ NAMES = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("name", NAMES)
+# Pictures with hatches, with clipped parts and with parts of parts: what SVG names by its place.
+@pytest.mark.parametrize("name", ["worlds", "causes", "learning", "life"])
 def test_the_same_data_give_the_same_picture(drawings, name):
-    assert set(NAMES) == set(drawings)
-    assert style.svg(drawings[name]()) == style.svg(drawings[name]())
+    pictures = {style.svg(drawings[name]()) for _ in range(3)}
+    assert len(pictures) == 1
 
 
 def test_a_figure_is_saved_twice_the_same_as_svg_and_png(drawings, tmp_path):
@@ -80,6 +81,7 @@ def test_a_figure_is_saved_twice_the_same_as_svg_and_png(drawings, tmp_path):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_word_lies_inside_the_picture_and_can_be_read(drawings, name):
+    assert set(NAMES) == set(drawings)
     fig = drawings[name]()
     canvas = FigureCanvasAgg(fig)
     canvas.draw()

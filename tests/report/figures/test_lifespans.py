@@ -15,7 +15,8 @@ def test_bars_are_paired_by_world_with_blind_left():
             for bar in container.patches]  # fmt: skip
     middles = [bar.get_x() + bar.get_width() / 2 for bar in bars]
     assert [round(middle) for middle in middles] == [0, 0, 1, 1]
-    assert middles == sorted(middles)
+    edges = [edge for bar in bars for edge in (bar.get_x(), bar.get_x() + bar.get_width())]
+    assert edges == sorted(edges)
     assert [bar.get_height() for bar in bars] == [100, 200, 50, 75]
 
 

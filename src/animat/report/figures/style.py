@@ -13,6 +13,7 @@ from typing import Any, ParamSpec
 from cycler import cycler
 from matplotlib import rc_context, rcParamsDefault
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
 from animat.report.files import write_whole
 
@@ -133,6 +134,24 @@ def save(fig: Figure, stem: Path | str) -> tuple[Path, Path]:
 
 def _render(fig: Figure, kind: str, metadata: dict, **settings) -> bytes:
     buffer = io.BytesIO()
+    engine = fig.get_layout_engine()
     with rc_context(STYLE):
+        fig.draw_without_rendering()
+        fig.set_layout_engine("none")
+        _settle(fig)
         fig.savefig(buffer, format=kind, metadata=metadata, **settings)
+    fig.set_layout_engine(engine)
     return buffer.getvalue()
+
+
+def _settle(fig: Figure) -> None:
+    """Round where the layout put the parts of `fig`.
+
+    Its solver's last digits differ from run to run, and SVG names clip paths after them.
+    """
+    for part in fig.subfigs:
+        part.bbox_relative.set_points(part.bbox_relative.get_points().round(6))
+    for ax in fig.axes:
+        points = ax.get_position(original=True).get_points().round(6)
+        ax.set_position(Bbox(points))
+        ax.set_in_layout(True)
