@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 import shapely
+from scipy import ndimage
 
 from animat.world.raster import Raster
 
@@ -55,6 +56,22 @@ def _scattered(seed: int, resolution: float = 2.0, objects: int = 5) -> Raster:
         outline = centre + radius * np.column_stack([np.cos(angles), np.sin(angles)])
         polygons.append(shapely.Polygon(outline))
     return _drawn(polygons, resolution)
+
+
+def _dust(seed: int, resolution: float = 2.0, specks: int = 60) -> Raster:
+    """Scatter specks, each a site in the middle of one cell: the hardest to see of all objects."""
+    raster = _drawn((), resolution)
+    rng = np.random.default_rng(seed)
+    solid = raster.solid.copy()
+    row, column = (rng.uniform(30, 270, (2, specks)) / resolution + raster.border).astype(int)
+    solid[row, column] = 2 + np.arange(specks)
+    clearance = ndimage.distance_transform_edt(solid == 0) * resolution
+    return raster._replace(solid=solid, clearance=clearance.astype(np.float32))
+
+
+@pytest.fixture(scope="session")
+def dust() -> Drawing:
+    return _dust
 
 
 @pytest.fixture(scope="session")
