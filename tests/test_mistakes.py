@@ -19,6 +19,7 @@ Positive = Annotated[float, Field(gt=0)]
 class Wheel(Settings):
     radius: Positive = 1.0
     spokes: int = 8
+    grip: Positive | Annotated[int, Field(gt=0)] = 1.0
 
 
 class Track(Settings):
@@ -74,6 +75,10 @@ CASES: dict[str, tuple[dict[str, Any], list[str]]] = {
     "the table meant": (
         {"drive": {"length": -1, "links": 3}},
         ["key drive.length = -1: must be greater than 0"],
+    ),
+    "a union in the table meant": (
+        {"drive": {"grip": -1}},
+        ["key drive.grip = -1: must be greater than 0"],
     ),
     "neither table nor choice": (
         {"drive": "nome"},
@@ -148,7 +153,7 @@ ANY = st.recursive(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(data=st.dictionaries(st.sampled_from([*Robot.model_fields, "nome", "a b"]), ANY, max_size=4))
 def test_whatever_is_wrong_is_told_without_pydantics_words(data):
     try:
