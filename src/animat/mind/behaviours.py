@@ -2,7 +2,8 @@
 
 The paper says of the search only that it is random. Wandering here goes ahead along slow random
 curves and turns on the spot, always the same way until the view is free, when something stands
-before it.
+before it. A corner that the rays of `linear` miss can come to stand between two points of the
+collision ring, where no turn gets free of it; so turning in vain is broken off by going straight.
 
 A wander controller has the signature `wander(readings, aheads, sides, memory, luck_a, luck_b,
 speed, turn) -> (left, right)`: `readings` [N] of the proximity sensors, 0..1023; `aheads` [N], the
@@ -24,7 +25,12 @@ ALARM = 250
 """A reading above this turns the robot away; about 40 mm from a wall with `michel1996`."""
 
 CURVE_STEPS = 40
-"""How long a curve lasts, in steps; 100 mm at cruising speed."""
+"""How long a curve lasts on average, in steps; 100 mm at cruising speed."""
+
+TURN_STEPS, RETREAT_STEPS, AROUND_STEPS = 45, 10, 20
+"""After turning in vain for so long, 3/4 round at the default speed, it goes straight back (or
+ahead, if more stands behind it) for the second number of steps, and then turns for the third,
+whatever it sees."""
 
 
 @compiled
@@ -32,7 +38,7 @@ def curved_wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
     """Go ahead along slow random curves; turn away from what comes near.
 
     `memory` holds the side it is turning to (+1 left, -1 right, 0 not turning), the present
-    curve in motor units, and the steps left of it.
+    curve in motor units, the steps left of it, and how long it has been turning.
     """
     left_alarm = 0.0
     right_alarm = 0.0
@@ -42,16 +48,33 @@ def curved_wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
                 left_alarm += readings[n]
             else:
                 right_alarm += readings[n]
-    if left_alarm + right_alarm > 0.0:
+    if memory[3] >= TURN_STEPS + RETREAT_STEPS + AROUND_STEPS:
+        memory[3] = 0.0
+    if left_alarm + right_alarm > 0.0 or memory[3] >= TURN_STEPS:
         if memory[0] == 0.0:
             memory[0] = 1.0 if right_alarm > left_alarm else -1.0
+        memory[3] += 1.0
+        if TURN_STEPS < memory[3] <= TURN_STEPS + RETREAT_STEPS:
+            retreat = speed if behind(readings, aheads) > left_alarm + right_alarm else -speed
+            return 1.0 * retreat, 1.0 * retreat
         return -turn * memory[0], turn * memory[0]
     memory[0] = 0.0
+    memory[3] = 0.0
     if memory[2] <= 0.0:
         memory[1] = int(luck_a * 3.0) - 1.0
         memory[2] = 1.0 + int(luck_b * 2.0 * CURVE_STEPS)
     memory[2] -= 1.0
     return speed - memory[1], speed + memory[1]
+
+
+@compiled
+def behind(readings, aheads):
+    """Return the sum of what the sensors read that look back."""
+    total = 0.0
+    for n in range(len(readings)):
+        if aheads[n] < -0.5:
+            total += readings[n]
+    return total
 
 
 @compiled
