@@ -128,7 +128,7 @@ def claims_section(claims: Sequence[Claim], title: str = "The paper's claims") -
                 ("", "Part", "Here", "Verdict"),
                 [(name, part.label, _of(part), Badge(part.verdict)) for name, part in parts],
                 "The numbers behind the claims that have several. C3: ratio of mean lifespans "
-                "with its interval; C7: mean likelihood over robots with its whole range.",
+                "with its interval; C7: mean likelihood over robots with its interval.",
             )
         )
     return Section(title, tables=tables)
