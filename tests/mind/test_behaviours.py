@@ -64,6 +64,26 @@ def test_wandering_keeps_turning_the_same_way_until_the_view_is_free():
     assert wandering(readings(s3=900), memory) == LEFT_TURN
 
 
+def test_turning_in_vain_is_broken_off_by_going_back():
+    memory, seen = np.zeros(4), readings(s3=900)
+    motors = [wandering(seen, memory) for _ in range(1000)]
+    back = (-SPEED, -SPEED)
+    assert set(motors) == {LEFT_TURN, back}
+    vain = motors.index(back)
+    retreat = motors[vain:].index(LEFT_TURN)
+    assert 30 <= vain <= 70  # about once round
+    assert 0 < retreat < vain
+    assert 2 < motors.count(back) / retreat < 1000 / vain
+
+
+def test_a_free_view_ends_the_turn_and_starts_it_anew():
+    memory, seen = np.zeros(4), readings(s3=900)
+    for _ in range(5):
+        for _ in range(30):
+            assert wandering(seen, memory) == LEFT_TURN
+        assert wandering(CLEAR, memory) == (SPEED, SPEED)
+
+
 @pytest.mark.parametrize(("luck", "curve"), [(0.0, -1), (0.5, 0), (1 - 2.0**-32, 1)])
 @pytest.mark.parametrize(("luck_b", "length"), [(0.0, 1), (0.5, 41), (1 - 2.0**-32, 80)])
 def test_a_curve_is_kept_for_as_long_as_luck_gave_it(luck, curve, luck_b, length):

@@ -158,6 +158,9 @@ def test_a_lethal_margin_moves_that_of_every_variable_that_has_one():
     for physiology in ("decay", "relax"):
         margins = Mind(physiology=physiology, lethal_margin=0.02).resolved_variables().values()
         assert {variable.lethal_margin for variable in margins} == {0.02}
+    for physiology in ("excess", "linear"):
+        none = Mind(physiology=physiology, lethal_margin=0.02).resolved_variables()
+        assert none == PHYSIOLOGIES[physiology]
     own = Mind(
         physiology="decay", lethal_margin=0.02, variables={"stamina": {"lethal_margin": 0.03}}
     )

@@ -100,3 +100,8 @@ def test_a_variable_that_kills_nobody_may_start_in_the_lethal_margin():
         law="decay", rate=1e-4, set_point=0.9, start=0.01, lethal_margin=0.05, lethal=False
     )
     assert spared.start == 0.01
+
+
+@pytest.mark.parametrize(("law", "start"), [("decay", 0.0), ("decay", 1.0), ("growth", 1.0)])
+def test_a_life_may_start_at_a_bound_of_the_viability_zone(law, start):
+    assert Variable(law=law, rate=1e-4, set_point=0.9, start=start).start == start
