@@ -19,12 +19,13 @@ import animat
 
 ROOT = Path(animat.__file__).parent
 
-GROUND = {"settings", "mistakes"}
+GROUND = {"settings", "mistakes", "files"}
 """Modules that every layer may know."""
 
 KNOWS: dict[str, set[str]] = {
     "mistakes": set(),
     "settings": {"mistakes"},
+    "files": {"mistakes", "settings"},
     "progress": set(),
     "numerics": GROUND,
     "world": GROUND | {"numerics"},

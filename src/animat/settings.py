@@ -53,13 +53,13 @@ def explain(error: ValidationError, model: type[BaseModel], where: str) -> Setti
     return SettingsError(*(f"{where}: {line}" for line in mistakes(error, model)))
 
 
-def read_toml(path: Path | str, model: type[Model]) -> Model:
-    """Return the settings in a TOML file.
+def read_toml(path: Path | str, model: type[Model], largest: int = LARGEST_FILE) -> Model:
+    """Return the settings in a TOML file of at most `largest` bytes.
 
     Raises:
         SettingsError: the file cannot be read, is empty, is no TOML, or has mistakes.
     """
-    data = _parsed(_text(Path(path)), path)
+    data = _parsed(_text(Path(path), largest), path)
     if not data:
         raise SettingsError(f"{path}: is empty: it sets nothing")
     if _is_deeper_than(data, DEEPEST):
@@ -71,10 +71,10 @@ def read_toml(path: Path | str, model: type[Model]) -> Model:
         raise explain(error, model, str(path)) from None
 
 
-def _text(path: Path) -> str:
+def _text(path: Path, largest: int) -> str:
     try:
         with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
+            content = file.read(largest + 1)
     except FileNotFoundError:
         raise SettingsError(f"{path}: no such file") from None
     except IsADirectoryError:
@@ -83,8 +83,10 @@ def _text(path: Path) -> str:
         raise SettingsError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError as error:
         raise SettingsError(f"{str(path)!r}: is no path: {error}") from None
-    if len(content) > LARGEST_FILE:
-        raise SettingsError(f"{path}: is too large for a settings file: more than 1 MB")
+    if len(content) > largest:
+        raise SettingsError(
+            f"{path}: is too large for a settings file: more than {largest / 1e6:g} MB"
+        )
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

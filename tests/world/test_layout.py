@@ -92,7 +92,7 @@ def test_an_object_too_near_a_wall_is_named(x, y):
 
 def test_an_unknown_type_is_named_with_the_nearest():
     assert problems(at("CL", 300, 300), at("cl", 500, 500)) == (
-        "object 1 (cl at 500, 500): unknown type; nearest: CL; known: TS, TL, CS, CL",
+        'object 1 (cl at 500, 500): unknown type; did you mean "CL"?',
     )
 
 

@@ -61,7 +61,7 @@ def test_types_are_equal_by_content_and_hash_alike():
         ({"features": {}}, "at least 1"),
         ({"features": {"colour": float("inf")}}, "finite"),
         ({"features": {"colour": "0.3"}}, "valid number"),
-        ({"shape": "squire"}, "nearest: square"),
+        ({"shape": "squire"}, 'did you mean "square"'),
         ({"shape": 2}, "3 to 64"),
         ({"shape": True}, "a number of sides"),
         ({"shape": [[0, 0], [1]]}, "corners"),

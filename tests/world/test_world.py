@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 import shapely
 
+from animat.settings import SettingsError
 from animat.world.arena import Arena
 from animat.world.layout import Layout, LayoutError, Placement
 from animat.world.objects import TABLE_1, ObjectType
-from animat.world.problems import WorldError
 from animat.world.raster import FIRST_SITE
 from animat.world.world import World
 
@@ -112,7 +112,7 @@ def test_a_world_is_saved_and_loaded(tmp_path):
 
 @pytest.mark.parametrize("resolution", [0.0, -2.0, 51.0, float("nan")])
 def test_an_impossible_resolution_is_refused(resolution):
-    with pytest.raises(WorldError, match="resolution"):
+    with pytest.raises(SettingsError, match="resolution"):
         World.random({}, resolution=resolution)
 
 

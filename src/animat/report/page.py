@@ -14,10 +14,10 @@ from pathlib import Path
 from jinja2 import Environment, StrictUndefined
 from matplotlib.figure import Figure
 
+from animat.files import write_whole
 from animat.report.claims import Claim, Part, Verdict
 from animat.report.estimates import LEVEL, Estimate
 from animat.report.figures.style import png, svg
-from animat.report.files import write_whole
 from animat.report.survival import CellSummary
 
 PAPER = (
@@ -81,7 +81,7 @@ def write_page(
 ) -> None:
     """Write the page to `path`, whole or not at all. `lead` are paragraphs before all sections.
 
-    Raises OSError if it cannot be written.
+    Raises SettingsError if it cannot be written.
     """
     source = files("animat.report").joinpath("templates/report.html.j2").read_text("utf-8")
     environment = Environment(

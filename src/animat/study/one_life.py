@@ -7,14 +7,13 @@ trace and for its figure, and memory does not grow with its length.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow.parquet as pq
 
+from animat.files import whole
 from animat.life.life import Life, Recording, check, live, lived
 from animat.life.setting import bring_together
 from animat.life.trace import table
@@ -58,30 +57,20 @@ def live_one(asked: OneLife, tell: Telling) -> Life:
     mind = asked.settings.mind
     if mind.agent == "AF" and mind.networks is None:
         mind = _taught(asked, mind, world, tell)
-    life = live(
+    life = _live(
+        asked,
         mind,
         world,
-        robot=asked.settings.robot,
-        seed=asked.seed,
-        life=asked.index,
         steps=asked.steps,
         progress=lambda steps: tell("Life, steps", steps, asked.steps),
     )
     if asked.trace:
-        with _whole(asked.trace) as partial:
+        with whole(asked.trace) as partial:
             _write_trace(life, partial)
     if asked.figure:
         every = max(1, life.lifespan // FIGURE_ROWS)
-        drawn = live(
-            mind,
-            world,
-            robot=asked.settings.robot,
-            seed=asked.seed,
-            life=asked.index,
-            steps=asked.steps,
-            record=f"every:{every}",
-        ).figure()
-        with _whole(asked.figure) as partial:
+        drawn = _live(asked, mind, world, steps=asked.steps, record=f"every:{every}").figure()
+        with whole(asked.figure) as partial:
             drawn.savefig(partial, format=asked.figure.suffix[1:])
     return life
 
@@ -121,14 +110,18 @@ def story(life: Life) -> list[str]:
     return lines
 
 
+def _live(asked: OneLife, mind: Mind, world: World, **further: Any) -> Life:
+    """Live the life asked for, with this mind in this world."""
+    robot, seed, index = asked.settings.robot, asked.seed, asked.index
+    return live(mind, world, robot=robot, seed=seed, life=index, **further)
+
+
 def _taught(asked: OneLife, mind: Mind, world: World, tell: Telling) -> Mind:
     learner = mind.model_copy(update={"agent": "LEARNING"})
-    learnt = live(
+    learnt = _live(
+        asked,
         learner,
         world,
-        robot=asked.settings.robot,
-        seed=asked.seed,
-        life=asked.index,
         steps=LEARNING_STEPS,
         progress=lambda steps: tell("Learning first, steps", steps, LEARNING_STEPS),
     )
@@ -161,16 +154,3 @@ def _check_file(path: Path | None, suffixes: tuple[str, ...], force: bool) -> No
         raise SettingsError(f"{path}: there is no directory {path.parent}; make it first")
     if not os.access(path.parent, os.W_OK):
         raise SettingsError(f"{path}: cannot be written: {path.parent} is read-only")
-
-
-@contextmanager
-def _whole(path: Path) -> Iterator[Path]:
-    """Yield a temporary name beside `path`; what is written there takes the name at the end."""
-    partial = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        yield partial
-        partial.replace(path)
-    except OSError as error:
-        raise SettingsError(f"{path}: cannot be written: {error.strerror or error}") from None
-    finally:
-        partial.unlink(missing_ok=True)

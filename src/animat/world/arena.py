@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from typing import Annotated, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-Length = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
-Margin = Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)]
+from animat.settings import Settings
+
+Length = Annotated[float, Field(gt=0)]
+Margin = Annotated[float, Field(ge=0)]
 
 
-class Arena(BaseModel):
+class Arena(Settings):
     """A playground of `width` x `height` mm, x to the right, y up, walls all round.
 
     The margins are how far the walls reach in from each edge, in mm. The defaults are those of
     Michel's Khepera Simulator 2.0: 1 m by 1 m, free for x in 22..978 mm and y in 26..976 mm.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     width: Length = 1000.0
     height: Length = 1000.0

@@ -25,47 +25,53 @@ angle = 0.5                     # rad; optional
 
 from __future__ import annotations
 
-import json
-import re
-import tomllib
-from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+import tomli_w
+from pydantic import AfterValidator, Field, ValidationInfo
 
+from animat.files import write_whole
+from animat.settings import Settings, SettingsError, nearest, read_toml
 from animat.world.arena import Arena
 from animat.world.layout import MINIMUM_GAP, Layout, Placement
 from animat.world.objects import TABLE_1, ObjectType
-from animat.world.problems import WorldError, explained, nearest_name
+
+LARGEST_FILE = 10_000_000
+"""Bytes; as many sites as a world may have need about a quarter of it."""
 
 
-class WorldFile(BaseModel):
+def _known_type(site: Placement, info: ValidationInfo) -> Placement:
+    """Refuse a site of unknown type here, so that it is told together with other mistakes."""
+    types = info.data.get("types")
+    known = [kind.name for kind in types or ()]
+    if known and site.type not in known:
+        raise ValueError(f'type "{site.type}" is unknown{nearest(site.type, known)}')
+    return site
+
+
+Site = Annotated[Placement, AfterValidator(_known_type)]
+
+
+class WorldFile(Settings):
     """What a world's file may say."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
     name: Annotated[str, Field(min_length=1)]
-    resolution: Annotated[float, Field(strict=True, ge=0.1, le=50)] = 2.0
-    minimum_gap: Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)] = MINIMUM_GAP
-    arena: Arena = Field(default_factory=Arena)
+    resolution: Annotated[float, Field(ge=0.1, le=50)] = 2.0
+    minimum_gap: Annotated[float, Field(ge=0)] = MINIMUM_GAP
+    arena: Arena = Arena()
     types: tuple[ObjectType, ...] = TABLE_1
-    objects: tuple[Placement, ...]
-    spares: tuple[Placement, ...] = ()
+    objects: tuple[Site, ...]
+    spares: tuple[Site, ...] = ()
 
 
 def read_world(path: Path) -> tuple[str, Layout, float]:
     """Return name, layout and resolution (mm) of a world's file.
 
     Raises:
-        WorldError: a file that is missing or no TOML, or a line for every mistake in it.
+        SettingsError: a file that is missing or no TOML, or a line for every mistake in it.
     """
-    data = _read_toml(path)
-    try:
-        content = WorldFile.model_validate(data)
-    except ValidationError as error:
-        found = explained(error, WorldFile) + _unknown_types(data)
-        raise WorldError(f"{path}: {line}" for line in found) from None
+    content = read_toml(path, WorldFile, LARGEST_FILE)
     try:
         layout = Layout(
             placements=content.objects,
@@ -74,8 +80,8 @@ def read_world(path: Path) -> tuple[str, Layout, float]:
             arena=content.arena,
             minimum_gap=content.minimum_gap,
         )
-    except WorldError as error:
-        raise type(error)(f"{path}: {line}" for line in error.problems) from None
+    except SettingsError as error:
+        raise type(error)(*(f"{path}: {line}" for line in error.problems)) from None
     return content.name, layout, content.resolution
 
 
@@ -83,82 +89,15 @@ def write_world(path: Path, name: str, layout: Layout, resolution: float) -> Non
     """Write a world's file, whole or not at all.
 
     Raises:
-        WorldError: the file cannot be written.
+        SettingsError: the file cannot be written.
     """
-    lines = [
-        f"name = {_value(name)}",
-        f"resolution = {_value(resolution)}",
-        f"minimum_gap = {_value(layout.minimum_gap)}",
-    ]
-    lines += _table("[arena]", layout.arena)
-    for header, entries in (
-        ("[[types]]", layout.types),
-        ("[[objects]]", layout.placements),
-        ("[[spares]]", layout.spares),
-    ):
-        if entries:
-            for entry in entries:
-                lines += _table(header, entry)
-        elif header == "[[objects]]":
-            lines.insert(3, "objects = []")
-    partial = path.with_name(path.name + ".partial")
-    try:
-        partial.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
-        partial.replace(path)
-    except OSError as error:
-        with suppress(OSError):
-            partial.unlink()
-        raise WorldError([f"{path}: cannot be written: {error.strerror}"]) from None
-
-
-def _read_toml(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise WorldError([f"{path}: there is no such file"]) from None
-    except OSError as error:
-        raise WorldError([f"{path}: cannot be read: {error.strerror}"]) from None
-    except UnicodeDecodeError:
-        raise WorldError([f"{path}: this is no UTF-8 text; a world is a TOML file"]) from None
-    except tomllib.TOMLDecodeError as error:
-        raise WorldError([f"{path}: this is no TOML: {error}"]) from None
-
-
-def _unknown_types(data: dict[str, Any]) -> list[str]:
-    """Return a line for every site of unknown type in a file that has other mistakes as well."""
-    defined = [entry.get("name") for _, entry in _tables(data, "types")]
-    known = [name for name in defined if isinstance(name, str)] or [t.name for t in TABLE_1]
-    return [
-        f"{key}[{number}].type = {entry['type']!r}: unknown type"
-        f"{nearest_name(entry['type'], known)}; known: {', '.join(known)}"
-        for key in ("objects", "spares")
-        for number, entry in _tables(data, key)
-        if isinstance(entry.get("type"), str) and entry["type"] not in known
-    ]
-
-
-def _tables(data: dict[str, Any], key: str) -> list[tuple[int, dict[str, Any]]]:
-    value = data.get(key)
-    entries = value if isinstance(value, list) else []
-    return [(i, entry) for i, entry in enumerate(entries) if isinstance(entry, dict)]
-
-
-def _table(header: str, entry: BaseModel) -> list[str]:
-    pairs = [f"{key} = {_value(value)}" for key, value in entry if value is not None]
-    return ["", header, *pairs]
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{_key(k)} = {_value(v)}" for k, v in value.items()) + " }"
-    if isinstance(value, tuple):
-        return "[" + ", ".join(_value(item) for item in value) + "]"
-    if isinstance(value, int):
-        return str(value)
-    return repr(float(value))
-
-
-def _key(name: str) -> str:
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _value(name)
+    content = {
+        "name": name,
+        "resolution": float(resolution),
+        "minimum_gap": float(layout.minimum_gap),
+        "arena": layout.arena.model_dump(),
+        "types": [kind.model_dump(exclude_none=True) for kind in layout.types],
+        "objects": [site.model_dump() for site in layout.placements],
+        "spares": [site.model_dump() for site in layout.spares],
+    }
+    write_whole(path, tomli_w.dumps(content).encode())

@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
 
 from animat.numerics.compiled import kernel
+from animat.settings import Settings, SettingsError, nearest
 from animat.world.arena import Arena
 from animat.world.geometry import Outlines, packed, polygon_gap, signed_distance
 from animat.world.objects import TABLE_1, ObjectType
-from animat.world.problems import WorldError, nearest_name
 
 MINIMUM_GAP = 70.0
 """mm between neighbours: the robot's collision ring is 60 mm across, and it has to turn."""
@@ -28,22 +26,18 @@ _MOST_PAIRS = 50
 TOUCHING = 1e-6  # mm; closer than this is touching
 _START_GRID = 2.0  # mm between the places tried
 
-Coordinate = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 
-
-class LayoutError(WorldError):
+class LayoutError(SettingsError):
     """A layout that cannot be: it overlaps, leaves the arena, leaves no room, or does not fit."""
 
 
-class Placement(BaseModel):
+class Placement(Settings):
     """A site: an object of a type at x, y (mm, its centroid), turned by `angle` (rad)."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
     type: str
-    x: Coordinate
-    y: Coordinate
-    angle: Coordinate = 0.0
+    x: float
+    y: float
+    angle: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -69,7 +63,7 @@ class Layout:
         if not found:
             found = [*_unknown_types(self), *_place_problems(self)]
         if found:
-            raise LayoutError(found)
+            raise LayoutError(*found)
 
     @property
     def sites(self) -> tuple[Placement, ...]:
@@ -109,7 +103,7 @@ def _unknown_types(layout: Layout) -> list[str]:
     known = [kind.name for kind in layout.types]
     return [
         f"{site_name(number, site, len(layout.placements))}: unknown type"
-        f"{nearest_name(site.type, known)}; known: {', '.join(known)}"
+        f"{nearest(site.type, known)}"
         for number, site in enumerate(layout.sites)
         if site.type not in known
     ]

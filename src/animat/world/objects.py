@@ -7,31 +7,22 @@ from typing import Annotated, Any, Self
 
 from numpy import float64
 from numpy.typing import NDArray
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Field,
-    PlainValidator,
-    WithJsonSchema,
-    field_validator,
-    model_validator,
-)
+from pydantic import Field, PlainValidator, WithJsonSchema, field_validator, model_validator
 
-from animat.world.problems import nearest_name
+from animat.settings import Settings, nearest
 from animat.world.shapes import FEWEST_SIDES, MOST_SIDES, SIDES, polygon
 
 Corners = tuple[tuple[float, float], ...]
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Probability = Annotated[float, Field(strict=True, ge=0, le=1)]
+Probability = Annotated[float, Field(ge=0, le=1)]
+
+_ALLOWED = f"{', '.join(SIDES)}, a number of sides, or corners [[x, y], ...] in mm"
 
 
 def _known_shape(value: Any) -> str | int | Corners:
     if isinstance(value, str):
         if value not in SIDES:
-            raise ValueError(
-                f"unknown shape{nearest_name(value, SIDES)}; allowed: {', '.join(SIDES)}, "
-                "a number of sides, or corners [[x, y], ...] in mm"
-            )
+            close = nearest(value, SIDES).partition("; known")[0]
+            raise ValueError(f"unknown shape; allowed: {_ALLOWED}{close}")
         return value
     if isinstance(value, int) and not isinstance(value, bool):
         if not FEWEST_SIDES <= value <= MOST_SIDES:
@@ -41,9 +32,7 @@ def _known_shape(value: Any) -> str | int | Corners:
     try:
         return tuple((float(x), float(y)) for x, y in corners)
     except (TypeError, ValueError):
-        raise ValueError(
-            f"allowed: {', '.join(SIDES)}, a number of sides, or corners [[x, y], ...] in mm"
-        ) from None
+        raise ValueError(f"allowed: {_ALLOWED}") from None
 
 
 _SHAPE_SCHEMA = {
@@ -55,7 +44,7 @@ _SHAPE_SCHEMA = {
 }
 
 
-class ObjectType(BaseModel):
+class ObjectType(Settings):
     """A type of object, by name.
 
     `shape` is a name (triangle, square, pentagon, hexagon, octagon), a number of equal sides, or
@@ -64,14 +53,12 @@ class ObjectType(BaseModel):
     in [0, 1] that an act of that affordance succeeds. Both may have any number of entries.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
     name: str
     shape: Annotated[
         str | int | Corners, PlainValidator(_known_shape), WithJsonSchema(_SHAPE_SCHEMA)
     ]
-    size_mm: Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)] | None = None
-    features: Annotated[dict[str, Number], Field(min_length=1)]
+    size_mm: Annotated[float, Field(gt=0)] | None = None
+    features: Annotated[dict[str, float], Field(min_length=1)]
     affords: Annotated[dict[str, Probability], Field(min_length=1)]
 
     @field_validator("name")

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from animat.numerics.compiled import compiled, kernel
 from animat.numerics.elementary import sine_cosine
 from animat.numerics.streams import LAYOUT, uniforms
+from animat.settings import nearest
 from animat.world.arena import Arena
 from animat.world.geometry import Outlines, packed, polygon_gap
 from animat.world.layout import TOUCHING, Layout, LayoutError, Placement
 from animat.world.objects import ObjectType
-from animat.world.problems import nearest_name
 
 TRIES = 2_000
 """Places tried for an object before it counts as not fitting."""
@@ -45,7 +45,7 @@ def scattered(
     found = _count_problems(counts, types)
     found += _seed_and_gap_problems(seed, gap)
     if found:
-        raise LayoutError(found)
+        raise LayoutError(*found)
     empty = Layout(placements=(), types=types, arena=arena, minimum_gap=gap)
     wanted = [kind for kind in types for _ in range(counts.get(kind.name, 0))]
     placed = _dropped(empty, wanted, seed, gap, 0, "objects")
@@ -62,7 +62,7 @@ def with_spares(layout: Layout, per_type: int, seed: int, gap: float) -> Layout:
     if isinstance(per_type, bool) or not isinstance(per_type, int) or per_type < 0:
         found.append(f"spares = {per_type!r}: allowed is a whole number of at least 0")
     if found:
-        raise LayoutError(found)
+        raise LayoutError(*found)
     occurring = {site.type for site in layout.placements}
     wanted = [kind for kind in layout.types if kind.name in occurring for _ in range(per_type)]
     placed = _dropped(layout, wanted, seed, gap, _SPARES, "spare sites")
@@ -80,10 +80,7 @@ def _count_problems(counts: Mapping[str, int], types: tuple[ObjectType, ...]) ->
     found = []
     for name, count in counts.items():
         if name not in names:
-            found.append(
-                f"counts: unknown type {name}{nearest_name(str(name), names)}; "
-                f"known: {', '.join(names)}"
-            )
+            found.append(f"counts: unknown type {name}{nearest(str(name), names)}")
         if isinstance(count, bool) or not isinstance(count, int) or count < 0:
             found.append(f"counts: {name} = {count!r}: allowed is a whole number of at least 0")
     return found
@@ -135,10 +132,8 @@ def _dropped(
         f"{best[name]} of {count} {name}" for name, count in Counter(k.name for k in wanted).items()
     )
     raise LayoutError(
-        [
-            f"the {what} do not fit into {right - left:g} x {top - bottom:g} mm with gaps of "
-            f"{gap:g} mm: room was found for {shares}; take fewer, a smaller gap or a larger arena"
-        ]
+        f"the {what} do not fit into {right - left:g} x {top - bottom:g} mm with gaps of "
+        f"{gap:g} mm: room was found for {shares}; take fewer, a smaller gap or a larger arena"
     )
 
 

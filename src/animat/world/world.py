@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.settings import SettingsError
 from animat.world.arena import Arena
 from animat.world.files import read_world, write_world
 from animat.world.layout import MINIMUM_GAP, Layout
 from animat.world.objects import TABLE_1, ObjectType
-from animat.world.problems import WorldError
 from animat.world.raster import Raster, draw
 from animat.world.scatter import scattered, with_spares
 
@@ -40,11 +40,9 @@ class World:
     def __post_init__(self) -> None:
         """Refuse a resolution that makes no raster."""
         if not FINEST <= self.resolution <= COARSEST:
-            raise WorldError(
-                [
-                    f"resolution = {self.resolution!r}: allowed is a length from "
-                    f"{FINEST:g} to {COARSEST:g} mm"
-                ]
+            raise SettingsError(
+                f"resolution = {self.resolution!r}: allowed is a length from "
+                f"{FINEST:g} to {COARSEST:g} mm"
             )
 
     @classmethod
@@ -89,7 +87,7 @@ class World:
         """Return the world of a TOML file.
 
         Raises:
-            WorldError: with a line for everything that is wrong with the file.
+            SettingsError: with a line for everything that is wrong with the file.
         """
         name, layout, resolution = read_world(Path(path))
         return cls(layout=layout, name=name, resolution=resolution)

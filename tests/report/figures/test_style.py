@@ -1,6 +1,7 @@
 import pytest
 
 from animat.report.figures import style
+from animat.settings import SettingsError
 
 
 def luminance(colour):
@@ -35,5 +36,5 @@ def test_agents_differ_in_black_and_white_too():
 
 
 def test_a_folder_that_is_not_there_is_refused(tmp_path):
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(SettingsError, match="cannot be written"):
         style.save(style.new_figure(1, 1), tmp_path / "none" / "figure")

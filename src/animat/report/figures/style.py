@@ -15,7 +15,7 @@ from matplotlib import rc_context, rcParamsDefault
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-from animat.report.files import write_whole
+from animat.files import write_whole
 
 BLACK = "#000000"
 ORANGE = "#E69F00"
@@ -124,7 +124,7 @@ def png(fig: Figure, dpi: int = 200) -> bytes:
 
 
 def save(fig: Figure, stem: Path | str) -> tuple[Path, Path]:
-    """Write `stem`.svg and `stem`.png and return their paths. Raises OSError if it cannot."""
+    """Write `stem`.svg and `stem`.png and return their paths. Raises SettingsError if it cannot."""
     stem = Path(stem)
     paths = stem.with_name(stem.name + ".svg"), stem.with_name(stem.name + ".png")
     for path, content in zip(paths, (svg(fig), png(fig)), strict=True):
