@@ -112,7 +112,9 @@ def act(state, mind, robot, raster, present, functions, seed, life):
 @compiled
 def search(state, mind, robot, functions, seed, life):
     """Wander: no object calls for anything."""
-    luck_a, luck_b, _, _ = uniforms(seed, life, WANDERING, state.step)
+    luck_a = luck_b = 0.0
+    if behaviours.needs_luck(mind.wander, state.memory):
+        luck_a, luck_b, _, _ = uniforms(seed, life, WANDERING, state.step)
     left, right = behaviours.wander(
         mind.wander,
         state.readings,

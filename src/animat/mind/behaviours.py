@@ -78,6 +78,12 @@ def behind(readings, aheads):
 
 
 @compiled
+def needs_luck(controller, memory):
+    """Tell whether a controller looks at its luck this step: to draw it is a tenth of a step."""
+    return controller != CURVED_WANDER or memory[2] <= 0.0
+
+
+@compiled
 def wander(controller, readings, aheads, sides, memory, luck_a, luck_b, speed, turn, custom):
     """Wander by the controller of the given code; `custom` is the user's own function."""
     if controller == CURVED_WANDER:

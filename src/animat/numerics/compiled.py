@@ -10,9 +10,9 @@ made of its name and its source, and a cached kernel is stamped with the source 
 package.
 
 Bits: no fast maths and no contraction to fused multiply-add, so that a result does not depend on
-the processor; NumPy's error model, so that no step can raise. No run-time for memory, so that nothing
-in a step can allocate: a function that tries does not compile. Everything is inlined into its
-kernel: handing a world's arrays from function to function by value costs more than the step.
+the processor; NumPy's error model, so that no step can raise. No run-time for memory, so that
+nothing in a step can allocate: a function that tries does not compile. Everything is inlined into
+its kernel: to hand a world's arrays from function to function by value costs more than the step.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from typing import Any, TypeVar
 
 import numba
 import numpy as np
+from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, install_listener
 
@@ -86,7 +87,7 @@ def _identity(function: Callable[..., Any]) -> str | None:
         digest.update(repr(cell.cell_contents).encode())
     for name, value in _taken(function):
         if isinstance(value, Dispatcher):
-            digest.update(f"{name}={value._uuid}".encode())
+            digest.update(f"{name}={getattr(value, '_uuid')}".encode())  # noqa: B009
         elif isinstance(value, (*PLAIN, tuple, np.generic)):
             digest.update(f"{name}={value!r}".encode())
     return f"{function.__module__}.{function.__qualname__}:{digest.hexdigest()}"
@@ -105,14 +106,14 @@ def _taken(function: Callable[..., Any]) -> Iterator[tuple[str, Any]]:
 
 
 class _Once(Listener):
-    """Call a function at the first event."""
+    """Call a function when the first kernel is compiled; what is not a kernel is small."""
 
     def __init__(self, tell: Callable[[], None]) -> None:
         self.tell: Callable[[], None] | None = tell
 
     def on_start(self, event: Event) -> None:
-        tell, self.tell = self.tell, None
-        if tell:
+        if self.tell and isinstance(event.data["dispatcher"]._cache, FunctionCache):
+            tell, self.tell = self.tell, None
             tell()
 
     def on_end(self, event: Event) -> None:
@@ -121,6 +122,6 @@ class _Once(Listener):
 
 @contextmanager
 def announcing(tell: Callable[[], None]) -> Iterator[None]:
-    """Call `tell` once if something is compiled meanwhile, rather than read from disk."""
+    """Call `tell` once if a kernel is compiled meanwhile, rather than read from disk."""
     with install_listener("numba:compile", _Once(tell)):
         yield

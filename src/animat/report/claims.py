@@ -168,12 +168,15 @@ def judge_learning(likelihoods: pa.Table, *, seed: int = 0, resamples: int = RES
         parts.append(Part(f"{name} {thing}", *said, _within(distance, FARTHEST)))
         distances.append(distance)
     worst = max(range(len(pairs)), key=lambda n: distances[n].value)
+    farthest = distances[worst]
     learnt = sum(bool((away[seeds == one] <= FARTHEST).all()) for one in each)
     return Claim(
         "C7",
         "the networks learn what each object affords",
         "likelihood close to 1 where afforded, else close to 0",
-        *distances[worst],
+        farthest.value,
+        farthest.low,
+        farthest.high,
         min((part.verdict for part in parts), key=_ORDER.index),
         f"largest distance of a mean likelihood from Table 1 ({parts[worst].label}), at most "
         f"{FARTHEST}; {learnt} of {each.size} robots are within it everywhere; {LEVEL:.0%} "

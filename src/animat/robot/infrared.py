@@ -40,7 +40,7 @@ NEAR_PROBES = 20.0
 # Past the border of a cell by so much (in cells), a ray is in the next one whatever the rounding.
 NUDGE = 1e-9
 
-Words = tuple[int, int, int, int]
+Words = tuple[np.uint64, np.uint64, np.uint64, np.uint64]
 
 
 @compiled

@@ -73,22 +73,29 @@ class Khepera(Settings):
     Raises pydantic's ValidationError for unknown names, wrong types and impossible values.
     """
 
-    radius: float = Field(27.5, gt=0, description="of the body, mm")
-    wheel_base: float = Field(50.0, gt=0, description="distance between the wheels, mm")
-    step_mm: float = Field(0.5, gt=0, description="mm a wheel moves per step and motor unit")
-    max_motor: int = Field(10, ge=1, description="largest motor command, either way")
-    motor_noise: bool = Field(True, description="whether motion is noisy")
-    position_noise: float = Field(
-        0.10, ge=0, lt=1, description="spread of the x and y displacements, as a share of them"
+    radius: float = Field(default=27.5, gt=0, description="of the body, mm")
+    wheel_base: float = Field(default=50.0, gt=0, description="distance between the wheels, mm")
+    step_mm: float = Field(
+        default=0.5, gt=0, description="mm a wheel moves per step and motor unit"
     )
-    turn_noise: float = Field(0.05, ge=0, lt=1, description="spread of the turn, as a share of it")
+    max_motor: int = Field(default=10, ge=1, description="largest motor command, either way")
+    motor_noise: bool = Field(default=True, description="whether motion is noisy")
+    position_noise: float = Field(
+        default=0.10,
+        ge=0,
+        lt=1,
+        description="spread of the x and y displacements, as a share of them",
+    )
+    turn_noise: float = Field(
+        default=0.05, ge=0, lt=1, description="spread of the turn, as a share of it"
+    )
     ring_radius: float = Field(
-        30.0, gt=0, le=40, description="of the eight collision points round the centre, mm"
+        default=30.0, gt=0, le=40, description="of the eight collision points round the centre, mm"
     )
     infrared: Literal["michel1996", "linear"] = Field(
-        "michel1996", description="how the sensors answer to what is before them"
+        default="michel1996", description="how the sensors answer to what is before them"
     )
-    infrared_noise: bool = Field(True, description="whether infrared readings are noisy")
+    infrared_noise: bool = Field(default=True, description="whether infrared readings are noisy")
     sensors: tuple[Sensor, ...] = Field(
         default=(
             Sensor(x=9.5, y=23.0, direction=90.0),

@@ -69,7 +69,7 @@ FIGURES: dict[str, tuple[str, str]] = {
 def publish(result: Reproduction, directory: Path, tell: Callable[[], None]) -> None:
     """Write everything into `directory`, which must be there. `tell` is called per figure.
 
-    Raises OSError if it cannot be written.
+    Raises OSError or SettingsError if it cannot be written.
     """
     pq.write_table(result.lives, directory / "lives.parquet")
     pq.write_table(result.learnt.final, directory / "likelihoods.parquet")
@@ -85,7 +85,9 @@ def publish(result: Reproduction, directory: Path, tell: Callable[[], None]) -> 
     pictures = []
     for name, figure in _figures(result):
         save(figure, directory / name)
-        pictures.append(page.picture(figure, *FIGURES[name]))
+        pictures.append(
+            page.picture(figure, caption=FIGURES[name][0], alternative=FIGURES[name][1])
+        )
         tell()
     page.write_page(
         directory / "report.html",
@@ -109,23 +111,25 @@ def _figures(result: Reproduction) -> list[tuple[str, Figure]]:
             strict=True,
         )
     ]
-    shelter = {
-        "variable": "stamina",
-        "drive": "fatigue",
-        "behaviour": "shelter",
-        "affordance": "shelter",
-    }
     panels = [
-        Panel(title, [Bar(*summary.cell, summary.mean) for summary in summaries])
+        Panel(title, [Bar(one.cell[0], one.cell[1], one.mean) for one in summaries])
         for title, summaries in (
             (f"{PAPERS_LIVES} lives a cell, as in the paper", result.papers),
             (f"{result.size.lives:,} lives a cell", result.summaries),
         )
     ]
+    figure4 = learning_figure(
+        result.learnt.trace,
+        variable="stamina",
+        drive="fatigue",
+        behaviour="shelter",
+        affordance="shelter",
+        types=types,
+    )
     return [
         ("figure2_worlds", worlds_figure(drawings, robot_drawing(result.settings.robot))),
         ("figure3_grasp", learning_figure(result.learnt.trace, types=types)),
-        ("figure4_shelter", learning_figure(result.learnt.trace, types=types, **shelter)),
+        ("figure4_shelter", figure4),
         ("learning_curve", learning_curve_figure(result.learnt.curve, afforded=truth)),
         ("figure5_lifespans", lifespans_figure(panels)),
         ("survival", survival_figure(curves, log=True)),
