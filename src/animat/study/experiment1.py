@@ -1,8 +1,8 @@
 """Experiment 1: can affordances be learnt? (paper, "First Experiment Set"; Figures 3 and 4)
 
 Robots of the kind LEARNING live in World 1 for 300,000 steps without dying. Reported are what
-their networks say of every object type at the end, how that came about over the episodes, and the
-last steps of the first robot.
+their networks say of every object type at the end, how that came about over the episodes of each
+network, and the last steps of one robot.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from animat.mind.networks import Networks
 from animat.robot.khepera import Khepera
 from animat.world.world import World
 
-LOOK_EVERY = 250
-"""Steps between two looks at the networks while a learning curve is drawn."""
+LOOK_EVERY = 500
+"""Steps between two looks at the networks, for the learning curve; an act takes 20 and more."""
 
-CURVE_EPISODES = 200
-"""How many episodes a learning curve shows."""
+CURVE_EPISODES = 100
+"""How many episodes of each network a learning curve shows."""
 
 LAST = 500
 """How many of the last steps Figures 3 and 4 show."""
@@ -41,13 +41,16 @@ class Learnt(NamedTuple):
     """What came of Experiment 1.
 
     `final` (seed, network, object, likelihood, afforded) and `curve` (seed, episode, network,
-    object, likelihood) have a row for each network and object type; `networks` are those of the
-    robots in turn; `trace` is that of the first robot's last steps.
+    object, likelihood) have a row for each network and object type, an episode being an act of the
+    network's behaviour; `networks` are those of the robots in turn; `trace` holds the last steps
+    of the robot `shown`, the first of those that ran most of the behaviours, and most often, in
+    these steps.
     """
 
     final: pa.Table
     curve: pa.Table
     networks: list[Networks]
+    shown: int
     trace: pa.Table
 
 
@@ -86,21 +89,29 @@ def learn(
             )
         finally:
             stop.set()
-    states = np.concatenate([states for states, _ in parts])
+    states, curve, recent = (np.concatenate(part) for part in zip(*parts, strict=True))
     networks = [
         Networks(
             tuple(learner.behaviours), world.feature_names, learner.learning.hidden_units, weights
         )
         for weights in states["weights"]
     ]
+    shown = int(np.argmax(steps * (recent > 0).sum(axis=1) + recent.sum(axis=1)))
     last = live(
-        learner, world, robot=robot, seed=seed, steps=steps, record=f"last:{min(LAST, steps)}"
+        learner,
+        world,
+        robot=robot,
+        seed=seed,
+        life=shown,
+        steps=steps,
+        record=f"last:{min(LAST, steps)}",
     )
     assert last.trace is not None
     return Learnt(
         _final(setting, states),
-        _curve(setting, np.concatenate([curve for _, curve in parts])),
+        _curve(setting, curve),
         networks,
+        shown,
         last.trace,
     )
 
@@ -112,26 +123,28 @@ def _learn_chunk(
     steps: int,
     stop: Event,
     progress: Progress | None,
-) -> tuple[NDArray[np.void], NDArray[np.float64]]:
-    """Return the states [L] at the end and the curve [L, CURVE_EPISODES + 1, B, T]."""
+) -> tuple[NDArray[np.void], NDArray[np.float64], NDArray[np.int64]]:
+    """Return of L robots the states [L] at the end, curves and acts in the last steps.
+
+    The curves [L, CURVE_EPISODES + 1, B, T] are over the episodes of each network; the acts are
+    [L, B].
+    """
     states, present = setting.begin(seed, lives)
-    known = likelihoods(setting, states)
-    curve = np.repeat(known[:, None], CURVE_EPISODES + 1, axis=1)
-    until = 0
-    while until < steps and not stop.is_set():
-        episodes = states["trainings"].copy()
-        curving = episodes.min() < CURVE_EPISODES
-        until = min(until + (LOOK_EVERY if curving else 40 * LOOK_EVERY), steps)
-        before = int(states["step"].sum())
+    curve = np.repeat(likelihoods(setting, states)[:, None], CURVE_EPISODES + 1, axis=1)
+    acts = states["acts_by_behaviour"].copy()
+    recent = acts
+    for until in [*range(LOOK_EVERY, steps - LAST, LOOK_EVERY), max(steps - LAST, 0), steps]:
+        if stop.is_set():
+            break
         live_on(setting, seed, lives, states, present, until)
+        known = likelihoods(setting, states)
+        recent = states["acts_by_behaviour"] - acts
+        for row, behaviour in zip(*np.nonzero(recent), strict=True):
+            curve[row, acts[row, behaviour] + 1 :, behaviour] = known[row, behaviour]
+        acts = states["acts_by_behaviour"].copy()
         if progress:
-            progress(int(states["step"].sum()) - before)
-        if curving:
-            known = likelihoods(setting, states)
-            for row, episode in enumerate(states["trainings"]):
-                if episode > episodes[row]:
-                    curve[row, episode:] = known[row]
-    return states, curve
+            progress(len(lives) * min(LOOK_EVERY, until))
+    return states, curve, recent
 
 
 def _final(setting: Setting, states: NDArray[np.void]) -> pa.Table:

@@ -36,9 +36,9 @@ FIGURES: dict[str, tuple[str, str]] = {
         "The two worlds drawn to scale",
     ),
     "figure3_grasp": (
-        "Figure 3. The last 500 steps of a learning robot: object type, nutrition, hunger,"
-        " learning reward, grasp likelihood. Shaded: the robot eats; at other times the network"
-        " holds its value.",
+        "Figure 3. The last 500 steps of a learning robot, the one that did most in them: object"
+        " type, nutrition, hunger, learning reward, grasp likelihood. Shaded: the robot eats; at"
+        " other times the network holds its value.",
         "Five signals over the last 500 steps",
     ),
     "figure4_shelter": (
@@ -47,7 +47,7 @@ FIGURES: dict[str, tuple[str, str]] = {
         "Five signals over the last 500 steps",
     ),
     "learning_curve": (
-        "What the networks say of each object type, over the episodes learnt from; mean and"
+        "What the networks say of each object type, over the acts each has learnt from; mean and"
         " spread over robots.",
         "Likelihood against episodes for the three networks",
     ),
@@ -84,10 +84,9 @@ def publish(result: Reproduction, directory: Path, tell: Callable[[], None]) -> 
         world.save(directory / f"world_{world.name}.toml")
     pictures = []
     for name, figure in _figures(result):
-        save(figure, directory / name)
-        pictures.append(
-            page.picture(figure, caption=FIGURES[name][0], alternative=FIGURES[name][1])
-        )
+        drawn, _ = save(figure, directory / name)
+        caption, words = FIGURES[name]
+        pictures.append(page.picture_file(drawn, caption, words))
         tell()
     page.write_page(
         directory / "report.html",
