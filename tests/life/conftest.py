@@ -104,4 +104,6 @@ def spared() -> World:
 def trained() -> Networks:
     """The networks of a robot that learnt in a small world with two objects of each type."""
     world = World.random({"TS": 2, "TL": 2, "CS": 2, "CL": 2}, seed=3, name="school")
-    return live(Mind(agent="LEARNING"), world, seed=1, steps=150_000).networks
+    slow = {"restlessness": {"law": "linear", "kind": "excess", "rate": 2e-4}}
+    mind = Mind(agent="LEARNING", variables=slow)
+    return live(mind, world, seed=1, steps=200_000).networks
