@@ -19,8 +19,8 @@ import animat
 ORDER = ("TS", "CL", "CS", "TL")
 """Which types get one more where the number is no multiple of four."""
 
-GAP = 65.0
-"""mm between objects, little more than the robot: so that 40 of them fit."""
+GAP = 50.0
+"""mm between objects, so that 40 of them fit; the robot does not pass through the narrowest."""
 
 NUMBERS = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, 28, 32, 36, 40)
 
