@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import hashlib
 import inspect
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -28,6 +29,7 @@ from typing import Any, TypeVar
 
 import numba
 import numpy as np
+from numba.core import utils
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, install_listener
@@ -37,6 +39,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 PLAIN = (bool, int, float, str, type(None))
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False, "_nrt": False}
+
+# A function of a user's file belongs to no module that can be imported, so Numba counts it to a
+# module that stands in. Cached code asks for that by its name, under which nothing is found.
+sys.modules.setdefault(utils._dynamic_modname, utils._dynamic_module)
 
 
 def compiled(function: Function) -> Function:
