@@ -20,6 +20,9 @@ ERRATA = (
     " V_m) - (V_M - V_m)(a + b/tau) exp(-t/tau).",
     'The sentence "nutrition to hunger, fatigue to restlessness and curiosity to interaction" is a'
     " slip: nutrition is watched by hunger, stamina by fatigue, restlessness by curiosity.",
+    "The law of growth stands still at V_m. An act that would carry a growing variable past V_m"
+    " leaves it there, and it never rises again: such a robot can hardly die. A few of these lives"
+    " can make most of a mean; compare the medians. docs/reproduction.md says more.",
 )
 
 
