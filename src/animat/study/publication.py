@@ -179,7 +179,10 @@ def _sections(
 ) -> list[page.Section]:
     tests = page.TableBlock(
         ("World", "Log-rank statistic", "p"),
-        [(world, f"{test.statistic:.2f}", f"{test.p:.2g}") for world, test in result.tests.items()],
+        [
+            (world, f"{test.statistic:.2f}", f"{test.p:.2g}" if test.p > 0.0 else "< 1e-300")
+            for world, test in result.tests.items()
+        ],
         "BLIND against AF: do their lives end alike?",
     )
     taken = page.TableBlock(
