@@ -61,6 +61,9 @@ def other(x):
 def own(x):
     return part(x) + 1.0
 
+def bare(x):
+    return x
+
 def made(gain):
     @compiled
     def scaled(x):
@@ -95,6 +98,24 @@ with event.install_listener("numba:compile", Compilations()):
     print(json.dumps({"result": run(float(sys.argv[2]), own), "compiled": names}))
 """
 
+# Runs a function by itself and then kernels; says after which it was told that one is compiled.
+TELLING = """
+import json
+import mine, numpy
+from animat.engine import run
+from animat.numerics.compiled import announcing
+
+done, told = [], []
+with announcing(lambda: told.append(list(done))):
+    done.append("own")
+    mine.own(1.0)
+    done.append("run")
+    run(1.0, mine.own)
+    done.append("again")
+    run(numpy.float32(1.0), mine.own)
+print(json.dumps({"result": done, "compiled": told}))
+"""
+
 
 class Laboratory:
     """A copy of the package with an engine of its own, and a user's files beside it."""
@@ -112,7 +133,7 @@ class Laboratory:
         (folder / "mine.py").write_text(OWN)
         (folder / "theirs.py").write_text(THEIRS)
 
-    def run(self, own="own", x=1.0, **settings):
+    def run(self, own="own", x=1.0, script=CHILD, **settings):
         """Run in a process of its own; return the result and the names of what it compiled."""
         environment = {
             **os.environ,
@@ -121,7 +142,7 @@ class Laboratory:
             "NUMBA_CACHE_DIR": str(self.folder / "cache"),
             **settings,
         }
-        command = [sys.executable, "-W", "error", "-c", CHILD, own, str(x)]
+        command = [sys.executable, "-W", "error", "-c", script, own, str(x)]
         ran = subprocess.run(
             command, env=environment, cwd=self.folder, capture_output=True, text=True, check=False
         )
@@ -180,6 +201,19 @@ def test_what_a_user_s_file_imports_is_not_overlooked(laboratory):
 def test_a_file_that_cannot_be_imported_by_its_name_is_found_again(laboratory):
     assert laboratory.run("loaded('mine.py', 'own')")[0] == 110
     assert laboratory.run("loaded('mine.py', 'own')") == (110, [])
+
+
+def test_a_function_that_is_gone_takes_no_other_with_it(laboratory):
+    """What is kept names the functions it was compiled with."""
+    assert laboratory.run("compiled(bare)")[0] == 103
+    laboratory.edit("mine.py", "def bare(x)", "def base(x)")
+    assert laboratory.run("other")[0] == 110
+    assert laboratory.run("other") == (110, [])
+
+
+def test_a_user_is_told_once_that_kernels_are_compiled_and_not_when_they_are_read(laboratory):
+    assert laboratory.run(script=TELLING)[1] == [["own", "run"]]
+    assert laboratory.run(script=TELLING)[1] == []
 
 
 def test_functions_made_by_one_function_are_told_apart(laboratory):

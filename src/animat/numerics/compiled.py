@@ -54,8 +54,26 @@ def kernel(function: Function) -> Function:
     """Compile a function that Python calls, and keep its machine code on disk."""
     dispatcher: Any = numba.njit(cache=True, **OPTIONS)(function)
     if dispatcher is not function:
-        dispatcher._cache._cache_file._source_stamp = package_stamp()
+        kept = dispatcher._cache._cache_file
+        kept._source_stamp = package_stamp()
+        kept._load_index = _or_nothing(kept._load_index)
     return _identified(dispatcher, function)
+
+
+def _or_nothing(load_index: Callable[[], dict[Any, Any]]) -> Callable[[], dict[Any, Any]]:
+    """Let a list of what is kept count as empty where it cannot be read.
+
+    It names the users' functions its kernels were compiled with; one that was renamed or deleted
+    since must not stop every other kernel.
+    """
+
+    def load() -> dict[Any, Any]:
+        try:
+            return load_index()
+        except Exception:  # unpickling raises whatever the user's file does
+            return {}
+
+    return load
 
 
 @cache
@@ -118,7 +136,8 @@ class _Once(Listener):
         self.tell: Callable[[], None] | None = tell
 
     def on_start(self, event: Event) -> None:
-        if self.tell and isinstance(event.data["dispatcher"]._cache, FunctionCache):
+        compiled_now: Any = event.data
+        if self.tell and isinstance(compiled_now["dispatcher"]._cache, FunctionCache):
             tell, self.tell = self.tell, None
             tell()
 
