@@ -102,6 +102,12 @@ def test_groups_in_which_nobody_dies_do_not_differ(lives_table):
     assert logrank(table, table) == (0.0, 1.0)
 
 
+def test_deaths_that_can_tell_nothing_apart_do_not_differ(lives_table):
+    """The one that dies is the last one watched: nobody else could have died there."""
+    one, other = lives_table({A: [50]}, cap=50), lives_table({B: [80]})
+    assert logrank(one, other) == (0.0, 1.0)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_the_mean_is_lifelines_area_under_the_curve(seed):
     lifelines = pytest.importorskip("lifelines")

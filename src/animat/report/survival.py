@@ -113,12 +113,15 @@ def kaplan_meier(table: pa.Table) -> KaplanMeier:
 
 
 def logrank(one: pa.Table, other: pa.Table) -> LogRank:
-    """Do the two groups of lives end alike? With no death in either, p is 1."""
+    """Do the two groups of lives end alike? Where no death can tell, p is 1."""
     groups = [lifespans(table) for table in (one, other)]
     if all(group.censored.all() for group in groups):
         return LogRank(0.0, 1.0)
     x, y = (stats.CensoredData.right_censored(g.steps, g.censored) for g in groups)
-    result = stats.logrank(x, y)
+    with np.errstate(invalid="ignore"):
+        result = stats.logrank(x, y)
+    if math.isnan(result.statistic):
+        return LogRank(0.0, 1.0)
     return LogRank(float(result.statistic), float(result.pvalue))
 
 
