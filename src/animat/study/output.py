@@ -6,44 +6,78 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from animat.settings import SettingsError
+
+HOW_MADE = "how_made.json"
+"""The file that every result holds: only a directory with it is replaced by another."""
 
 
 @contextmanager
 def fresh_directory(out: Path, *, force: bool) -> Iterator[Path]:
     """Yield a directory to fill; it takes the name `out` once it is filled without an error.
 
-    Raises SettingsError if `out` is there already and not `force`, is no directory, or cannot be
-    made. With `force` the old directory stays until the new one is whole.
+    With `force` it takes the place of an earlier result, which stays until the new one is whole.
+
+    Raises:
+        SettingsError: `out` is there already and not `force`, is no result, or cannot be made.
     """
-    if out.exists() and not out.is_dir():
-        raise SettingsError(f"{out}: is a file; give another directory with --out")
-    if out.exists() and not force and any(out.iterdir()):
-        raise SettingsError(f"{out}: is there already; --force replaces it, --out names another")
     try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        partial = Path(tempfile.mkdtemp(prefix=f".{out.name}.partial-", dir=out.parent))
+        # Where a link leads to, so that the link stays one.
+        place = Path(os.path.realpath(out))
+        _refuse_what_is_there(out, place, force)
+        # Missing parents are made at the end, so that a failure leaves none behind.
+        ground = next(parent for parent in place.parents if parent.exists())
+        partial = Path(tempfile.mkdtemp(prefix=f".{out.name}.partial-", dir=ground))
     except OSError as error:
         raise SettingsError(f"{out}: cannot be made: {error.strerror}") from None
     try:
         yield partial
         partial.chmod(0o777 & ~_umask())
-        if out.exists():
-            old = Path(tempfile.mkdtemp(prefix=f".{out.name}.old-", dir=out.parent))
-            out.rename(old / out.name)
-            partial.rename(out)
-            shutil.rmtree(old)
-        else:
-            partial.rename(out)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        _put(partial, place, force)
     except OSError as error:
-        raise SettingsError(
-            f"{error.filename or out}: cannot be written: {error.strerror}"
-        ) from None
+        raise SettingsError(f"{out}: cannot be written: {error.strerror or error}") from None
     finally:
         shutil.rmtree(partial, ignore_errors=True)
+
+
+def _refuse_what_is_there(out: Path, place: Path, force: bool) -> None:
+    another = "give another directory with --out"
+    if not place.exists():
+        return
+    if not place.is_dir():
+        raise SettingsError(f"{out}: is a file; {another}")
+    here = Path.cwd()
+    if os.path.ismount(place) or place in (here, *here.parents):
+        raise SettingsError(f"{out}: cannot be replaced as a whole; give one inside it with --out")
+    if not any(place.iterdir()):
+        return
+    if not force:
+        raise SettingsError(f"{out}: is there already; --force replaces it, --out names another")
+    if not (place / HOW_MADE).is_file():
+        raise SettingsError(f"{out}: is no earlier result, so it is not replaced; {another}")
+
+
+def _put(partial: Path, place: Path, force: bool) -> None:
+    """Give a directory its final name, in place of an empty one or, with `force`, of a full one."""
+    with suppress(OSError):
+        place.rmdir()
+    if not (force and place.exists()):
+        partial.rename(place)
+        return
+    old = Path(tempfile.mkdtemp(prefix=f".{place.name}.old-", dir=place.parent))
+    try:
+        place.rename(old / place.name)
+        partial.rename(place)
+    except BaseException:
+        if not place.exists():
+            (old / place.name).rename(place)
+        old.rmdir()
+        raise
+    shutil.rmtree(old, ignore_errors=True)
 
 
 def _umask() -> int:
