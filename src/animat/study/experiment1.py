@@ -133,6 +133,7 @@ def _learn_chunk(
     curve = np.repeat(likelihoods(setting, states)[:, None], CURVE_EPISODES + 1, axis=1)
     acts = states["acts_by_behaviour"].copy()
     recent = acts
+    lived = 0
     for until in [*range(LOOK_EVERY, steps - LAST, LOOK_EVERY), max(steps - LAST, 0), steps]:
         if stop.is_set():
             break
@@ -143,7 +144,8 @@ def _learn_chunk(
             curve[row, acts[row, behaviour] + 1 :, behaviour] = known[row, behaviour]
         acts = states["acts_by_behaviour"].copy()
         if progress:
-            progress(len(lives) * min(LOOK_EVERY, until))
+            progress(len(lives) * (until - lived))
+        lived = until
     return states, curve, recent
 
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import pyarrow as pa
 
+from animat.life.life import check as check_life
 from animat.life.setting import LifeError
 from animat.progress import Telling
 from animat.report.claims import Claim, judge
@@ -13,11 +14,15 @@ from animat.report.lives import cell, cells, first_lives
 from animat.report.survival import CellSummary, LogRank, logrank, summarise
 from animat.study.experiment1 import Learnt, learn
 from animat.study.experiment2 import compare
-from animat.study.settings import StudySettings
+from animat.study.settings import StudySettings, WorldChoice
 from animat.world.world import World
 
 PAPERS_LIVES = 20
 """Lives in each cell of the paper's Figure 5."""
+
+
+NEEDED = {"drives": ("hunger", "fatigue"), "behaviours": ("eat", "shelter")}
+"""What the figures of Experiment 1 show of a mind, whatever else it has."""
 
 
 class Size(NamedTuple):
@@ -51,10 +56,36 @@ class Reproduction(NamedTuple):
     tests: dict[str, LogRank]
 
 
+def check(settings: StudySettings, seed: int, size: Size) -> None:
+    """Refuse what would be left out of account, and what is too little. Raises LifeError."""
+    problems = []
+    if settings.world != WorldChoice():
+        problems.append(
+            "the settings choose a world; a reproduction is of Worlds 1 and 2, take [world] out"
+        )
+    if settings.mind.agent != "BLIND":
+        problems.append(
+            f'mind.agent = "{settings.mind.agent}"; a reproduction is of LEARNING, BLIND and AF,'
+            " take agent out"
+        )
+    for group, names in NEEDED.items():
+        missing = [name for name in names if name not in getattr(settings.mind, group)]
+        if missing:
+            problems.append(
+                f"mind.{group} has no {' and no '.join(missing)}, of which Figures 3 and 4 tell"
+            )
+    if size.robots < 1:
+        problems.append(f"seeds = {size.robots}; Experiment 1 needs at least 1 robot")
+    if size.lives < 2:
+        problems.append(f"lives = {size.lives}; a comparison needs at least 2 a cell")
+    if problems:
+        raise LifeError(*problems)
+    check_life(seed, 0, size.steps)
+
+
 def reproduce(settings: StudySettings, *, seed: int, size: Size, tell: Telling) -> Reproduction:
     """Run both experiments and judge the claims. Raises LifeError for what cannot be lived."""
-    if size.lives < 2:
-        raise LifeError(f"lives = {size.lives}; a comparison needs at least 2 a cell")
+    check(settings, seed, size)
     worlds = (World.abundant(), World.scarce())
     if settings.mind.consumed:
         worlds = (worlds[0].with_spares(2), worlds[1].with_spares(2))
