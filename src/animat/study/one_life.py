@@ -6,8 +6,8 @@ trace and for its figure, and memory does not grow with its length.
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -71,7 +71,7 @@ def live_one(asked: OneLife, tell: Telling) -> Life:
         every = max(1, life.lifespan // FIGURE_ROWS)
         drawn = _live(asked, mind, world, steps=asked.steps, record=f"every:{every}").figure()
         with whole(asked.figure) as partial:
-            drawn.savefig(partial, format=asked.figure.suffix[1:])
+            drawn.savefig(partial, format=asked.figure.suffix[1:].lower())
     return life
 
 
@@ -144,13 +144,17 @@ def _check_file(path: Path | None, suffixes: tuple[str, ...], force: bool) -> No
     """Refuse, before any work, a file that could not be written at its end."""
     if path is None:
         return
-    if path.suffix not in suffixes:
+    if path.suffix.lower() not in suffixes:
         raise SettingsError(f"{path}: give a name that ends in {' or '.join(suffixes)}")
-    if path.is_dir():
-        raise SettingsError(f"{path}: is a directory; give the name of a file")
-    if path.exists() and not force:
-        raise SettingsError(f"{path}: is there already; --force replaces it")
-    if not path.parent.is_dir():
-        raise SettingsError(f"{path}: there is no directory {path.parent}; make it first")
-    if not os.access(path.parent, os.W_OK):
-        raise SettingsError(f"{path}: cannot be written: {path.parent} is read-only")
+    try:
+        if path.is_dir():
+            raise SettingsError(f"{path}: is a directory; give the name of a file")
+        if path.exists() and not force:
+            raise SettingsError(f"{path}: is there already; --force replaces it")
+        if not path.parent.is_dir():
+            raise SettingsError(f"{path}: there is no directory {path.parent}; make it first")
+        # Only writing tells: permissions say nothing of a full or a read-only disk.
+        with NamedTemporaryFile(prefix=f".{path.name}.", suffix=".part", dir=path.parent):
+            pass
+    except OSError as error:
+        raise SettingsError(f"{path}: cannot be written: {error.strerror}") from None

@@ -1,0 +1,161 @@
+"""One life from the command line: what is told and written is the life itself."""
+
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+
+from animat.life import life as life_module
+from animat.life.life import live
+from animat.life.setting import LifeError
+from animat.mind.mind import Mind
+from animat.settings import SettingsError
+from animat.study import one_life
+from animat.study.one_life import FIGURE_ROWS, OneLife, live_one, story
+from animat.study.settings import StudySettings
+from animat.world.world import World
+
+
+def silent(task, done, total):
+    pass
+
+
+def asked(mind=None, seed=2, index=1, steps=300_000, trace=None, figure=None, force=False):
+    settings = StudySettings(mind=mind or Mind())
+    return OneLife(settings, seed, index, steps, trace, figure, force)
+
+
+def test_it_is_the_life_asked_for():
+    told = []
+    life = live_one(asked(), lambda *each: told.append(each))
+    alone = live(Mind(), World.abundant(), seed=2, life=1)
+    assert life.summary == alone.summary
+    assert life.trace is None
+    assert sum(done for _, done, _ in told) == life.lifespan
+    assert {(task, total) for task, _, total in told} == {("Life, steps", 300_000)}
+
+
+def test_the_trace_written_is_the_trace_of_the_life(tmp_path, monkeypatch):
+    # So small that it is written in several parts.
+    monkeypatch.setattr(life_module, "SLICE", 400)
+    path = tmp_path / "life.parquet"
+    life = live_one(asked(trace=path), silent)
+    alone = live(Mind(), World.abundant(), seed=2, life=1, record="all")
+    assert alone.trace is not None
+    assert life.lifespan > 400
+    assert pq.read_table(path).to_pylist() == alone.trace.to_pylist()
+    assert [each.name for each in tmp_path.iterdir()] == ["life.parquet"]
+
+
+@pytest.mark.parametrize(
+    ("name", "start"), [("a.svg", b"<?xml"), ("b.png", b"\x89PNG"), ("c.PNG", b"\x89PNG")]
+)
+def test_the_figure_is_of_the_kind_its_name_says(tmp_path, name, start):
+    live_one(asked(steps=300, figure=tmp_path / name), silent)
+    assert (tmp_path / name).read_bytes().startswith(start)
+    assert [each.name for each in tmp_path.iterdir()] == [name]
+
+
+def test_the_figure_of_a_long_life_is_drawn_from_few_rows(tmp_path, monkeypatch):
+    monkeypatch.setattr(one_life, "FIGURE_ROWS", 100)
+    drawn = []
+    figure = life_module.Life.figure
+    monkeypatch.setattr(life_module.Life, "figure", lambda self: drawn.append(self) or figure(self))
+    life = live_one(asked(figure=tmp_path / "a.svg"), silent)
+    assert life.lifespan > 200
+    assert 100 <= drawn[0].trace.num_rows < 200
+    assert FIGURE_ROWS >= 100_000
+
+
+def test_af_learns_first_if_it_knows_nothing(monkeypatch):
+    monkeypatch.setattr(one_life, "LEARNING_STEPS", 5_000)
+    told = []
+    life = live_one(asked(Mind(agent="AF")), lambda *each: told.append(each))
+    learner = live(Mind(agent="LEARNING"), World.abundant(), seed=2, life=1, steps=5_000)
+    assert life.mind.networks == learner.networks
+    assert life.mind.agent == "AF"
+    assert {(task, total) for task, _, total in told} == {
+        ("Learning first, steps", 5_000),
+        ("Life, steps", 300_000),
+    }
+
+
+def test_the_story_tells_what_was_counted():
+    life = live_one(asked(), silent)
+    told = life.summary
+    first, how, met, acted, end = story(life)
+    assert first == "BLIND in abundant, physiology excess, seed 2, life 1"
+    assert life.dead
+    assert how == f"lived {life.lifespan:,} steps and died of {life.death}"
+    assert met.startswith(f"met {told['encounters']} objects, disregarded {told['disregarded']},")
+    assert acted.startswith(f"acted {told['acts']} times, {told['successes']} with success: eat ")
+    values = life.state["values"]
+    assert f"nutrition {values[0]:.3f}, stamina {values[1]:.3f}" in end
+
+
+def test_the_story_of_a_learner_tells_what_it_learnt():
+    life = live_one(asked(Mind(agent="LEARNING"), steps=1_000), silent)
+    lines = story(life)
+    assert lines[1] == "lived 1,000 steps and was alive at the cap"
+    said = life.networks.likelihoods({"shape": 0.0, "size": 0.0})
+    assert f"TS affords eat {said['eat']:.2f}, shelter {said['shelter']:.2f}" in lines[5]
+    assert len(lines) == 5 + 4
+
+
+@pytest.mark.parametrize("kind", ["trace", "figure"])
+def test_a_file_that_cannot_be_written_is_refused_before_any_work(tmp_path, monkeypatch, kind):
+    monkeypatch.setattr(one_life, "live", lambda *_, **__: pytest.fail("it lived"))
+    end = {"trace": "parquet", "figure": "svg"}[kind]
+    (tmp_path / "file").touch()
+    (tmp_path / f"there.{end}").touch()
+    (tmp_path / f"directory.{end}").mkdir()
+    for path, why in {
+        tmp_path / "a.csv": "give a name that ends in",
+        tmp_path / "none": "give a name that ends in",
+        tmp_path / f"there.{end}": "is there already; --force replaces it",
+        tmp_path / f"directory.{end}": "is a directory",
+        tmp_path / "nowhere" / f"a.{end}": "there is no directory",
+        tmp_path / "file" / f"a.{end}": "there is no directory",
+        Path(f"/proc/a.{end}"): "cannot be written",
+        tmp_path / ("a" * 249 + f".{end}"): "cannot be written: File name too long",
+        tmp_path / ("a" * 300 + f".{end}"): "cannot be written: File name too long",
+    }.items():
+        with pytest.raises(SettingsError, match=why):
+            live_one(asked(**{kind: path}), silent)
+    with pytest.raises(SettingsError, match="is a directory"):
+        live_one(asked(**{kind: tmp_path / f"directory.{end}"}, force=True), silent)
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_an_old_file_is_replaced_when_asked(tmp_path):
+    path = tmp_path / "life.parquet"
+    path.write_text("old")
+    live_one(asked(steps=20, trace=path, force=True), silent)
+    assert pq.read_table(path).num_rows == 20
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, OSError(28, "No space left on device")])
+def test_a_file_that_comes_to_nothing_leaves_the_old_one(tmp_path, monkeypatch, error):
+    path = tmp_path / "life.parquet"
+    path.write_text("old")
+    write = pq.ParquetWriter.write_table
+
+    def fails(self, table):
+        write(self, table)
+        raise error
+
+    monkeypatch.setattr(pq.ParquetWriter, "write_table", fails)
+    expected = SettingsError if isinstance(error, OSError) else error
+    with pytest.raises(expected):
+        live_one(asked(steps=20, trace=path, force=True), silent)
+    assert path.read_text() == "old"
+    assert [each.name for each in tmp_path.iterdir()] == ["life.parquet"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "why"),
+    [({"seed": -1}, "seed = -1"), ({"index": -1}, "life = -1"), ({"steps": 0}, "steps = 0")],
+)
+def test_what_cannot_be_lived_is_refused(changes, why):
+    with pytest.raises(LifeError, match=why):
+        live_one(asked(**changes), silent)
