@@ -7,7 +7,7 @@ mistake told at once.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
@@ -65,8 +65,7 @@ def named(name: str) -> World:
     if Path(name).suffix == ".toml":
         return World.load(name)
     raise SettingsError(
-        f'world "{name}": no such world{nearest(name, PUBLISHED)}, or give the path of a'
-        " world's .toml file"
+        f'world "{name}": no such world, and no .toml file of one{nearest(name, PUBLISHED)}'
     )
 
 
@@ -76,6 +75,3 @@ class StudySettings(Settings):
     world: WorldChoice = WorldChoice()
     robot: Khepera = Khepera()
     mind: Mind = Mind()
-
-
-Physiology = Literal["excess", "decay", "relax", "linear"]
