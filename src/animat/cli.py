@@ -9,8 +9,10 @@ from __future__ import annotations
 import os
 import sys
 import time
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
@@ -31,20 +33,22 @@ app = typer.Typer(
 
 DONE, FAILED, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
+PRINTED_WIDTH = 120
+"""Characters in a line of a table that is printed elsewhere than on a terminal."""
+
 SettingsFile = Annotated[
     Path | None,
     typer.Option("--settings", help="A TOML file with [mind] and [robot] settings."),
 ]
 Seed = Annotated[int, typer.Option(help="The seed of everything random.", min=0, max=2**63 - 1)]
 
+# Only declared: whoever explains an error looks for it, as an unknown option ends the reading.
+Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
+
 
 @app.callback()
-def _animat(
-    debug: Annotated[bool, typer.Option(help="Show the traceback of an error.")] = False,
-) -> None:
+def _animat(debug: Debug = False) -> None:
     """Read the options that go before every command."""
-    if debug:
-        os.environ["ANIMAT_DEBUG"] = "1"
 
 
 @app.command()
@@ -61,19 +65,21 @@ def reproduce(
     ),
     settings: SettingsFile = None,
     quick: Annotated[bool, typer.Option("--quick", help="Small, under 15 s; for a look.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace the directory.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace an earlier result.")] = False,
+    debug: Debug = False,
 ) -> None:
     """Run both experiments of the paper and judge its claims."""
     from animat.progress import telling
     from animat.study.output import fresh_directory
     from animat.study.publication import FIGURES, publish
-    from animat.study.reproduction import QUICK, Size
+    from animat.study.reproduction import QUICK, Size, check
     from animat.study.reproduction import reproduce as run
 
     size = QUICK if quick else Size()
     given = {"lives": lives, "robots": seeds, "steps": steps}
     size = size._replace(**{name: value for name, value in given.items() if value is not None})
     chosen = _settings(settings, physiology=physiology)
+    check(chosen, seed, size)
     started = time.monotonic()
     with fresh_directory(out, force=force) as directory, _compiling_told(), telling() as tell:
         result = run(chosen, seed=seed, size=size, tell=tell)
@@ -106,6 +112,7 @@ def life(
         Path | None, typer.Option(help="Draw the life to this .svg, .png or .pdf file.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace these files.")] = False,
+    debug: Debug = False,
 ) -> None:
     """Live one life, and say how it went and why it ended."""
     from animat.progress import telling
@@ -126,10 +133,10 @@ def _settings(file: Path | None, **given: str | None) -> StudySettings:
     from animat.settings import explain, read_toml
     from animat.study.settings import StudySettings
 
-    settings = read_toml(file, StudySettings) if file else StudySettings()
+    settings = read_toml(file, StudySettings) if file is not None else StudySettings()
     chosen = {name: value for name, value in given.items() if value is not None}
     layout = chosen.pop("world", None)
-    changes = {"mind": chosen} | ({"world": {"layout": layout}} if layout else {})
+    changes = {"mind": chosen} | ({} if layout is None else {"world": {"layout": layout}})
     merged = settings.model_dump(exclude_unset=True)
     for section, values in changes.items():
         merged[section] = {**merged.get(section, {}), **values}
@@ -155,12 +162,13 @@ def _print_result(result: Reproduction) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from animat.report.estimates import Estimate
     from animat.report.page import interval
 
-    console = Console()
+    console = Console(width=None if sys.stdout.isatty() else PRINTED_WIDTH)
     claims = Table("", "claim", "paper", "here (95 % interval)", "verdict")
     for claim in result.claims:
-        ours = interval((claim.ours, claim.low, claim.high), ".2f")
+        ours = interval(Estimate(claim.ours, claim.low, claim.high), ".2f")
         claims.add_row(claim.id, claim.text, claim.paper, ours, claim.verdict)
     cells = Table("world", "agent", "lives", "mean lifespan", "the paper's 20", "acts succeed")
     for summary, papers in zip(result.summaries, result.papers, strict=True):
@@ -177,12 +185,17 @@ def _print_result(result: Reproduction) -> None:
 
 def main() -> None:
     """Run the command line and exit with its code."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
     try:
         code = app(standalone_mode=False)
+        sys.stdout.flush()
     except KeyboardInterrupt:
-        _leave("interrupted; nothing was written under a final name", INTERRUPTED)
+        code = INTERRUPTED
     except Exception as error:
         _explain(error)
+    if code == INTERRUPTED:
+        _leave("interrupted; nothing is half-written", INTERRUPTED)
     sys.exit(code if isinstance(code, int) else DONE)
 
 
@@ -190,19 +203,27 @@ def _explain(error: Exception) -> NoReturn:
     """Say what went wrong in a line for each mistake, and exit."""
     from animat.settings import SettingsError
 
-    if "ANIMAT_DEBUG" in os.environ or "--debug" in sys.argv:
-        raise error
-    if isinstance(error, typer.Abort):
-        _leave("interrupted; nothing was written under a final name", INTERRUPTED)
+    if "--debug" in sys.argv:
+        traceback.print_exception(error)
+    if isinstance(error, BrokenPipeError):
+        _leave("", FAILED)
     if usage := getattr(error, "format_message", None):
         _leave(usage(), WRONG_INPUT)
     if isinstance(error, SettingsError):
         _leave(str(error), WRONG_INPUT)
-    what = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) else str(error)
+    what = str(error)
+    if isinstance(error, OSError) and error.filename:
+        what = f"{error.filename}: {error.strerror}"
+    what = " ".join(what.split())
     _leave(f"{type(error).__name__}: {what} (--debug shows where)", FAILED)
 
 
 def _leave(text: str, code: int) -> NoReturn:
     for line in text.splitlines():
         print(f"animat: {line}", file=sys.stderr)
+    try:
+        sys.stdout.flush()
+    except OSError:
+        # Python would try once more at its end, and complain.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     sys.exit(code)

@@ -1,0 +1,366 @@
+"""The command line as its users meet it: what it prints, writes, refuses, and leaves behind."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import pyarrow.parquet as pq
+import pytest
+
+import animat.study.publication
+from animat.cli import main
+from animat.life.life import live
+from animat.mind.mind import Mind
+from animat.world.world import World
+
+SMALL = ("--lives", "2", "--seeds", "1", "--steps", "60")
+
+
+class Said(NamedTuple):
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def animat_says(monkeypatch, capsys, tmp_path):
+    """Run the command line in an empty directory."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> Said:
+        monkeypatch.setattr(sys, "argv", ["animat", *arguments])
+        with pytest.raises(SystemExit) as end:
+            main()
+        out, err = capsys.readouterr()
+        assert isinstance(end.value.code, int)
+        return Said(end.value.code, out, err)
+
+    return run
+
+
+def names(directory: Path) -> list[str]:
+    return sorted(path.name for path in directory.iterdir())
+
+
+def start(*arguments: str, cwd: Path) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-m", "animat", *arguments],
+        cwd=cwd,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def briefly(result, directory: Path, tell) -> None:
+    """Stand in for publishing where it is not the point, as drawing takes seconds."""
+    (directory / "report.html").write_text("new")
+
+
+class TestLife:
+    def test_it_lives_as_from_python(self, animat_says):
+        said = animat_says("life")
+        life = live(Mind(), World.abundant())
+        assert said.code == 0
+        lines = said.out.splitlines()
+        assert lines[0] == "BLIND in abundant, physiology excess, seed 0, life 0"
+        assert lines[1] == f"lived {life.lifespan:,} steps and died of {life.death}"
+
+    def test_every_choice_is_taken(self, animat_says):
+        said = animat_says(
+            *("life", "--world", "scarce", "--agent", "ORACLE", "--physiology", "decay"),
+            *("--seed", "5", "--life", "3", "--steps", "700"),
+        )
+        mind = Mind(agent="ORACLE", physiology="decay")
+        life = live(mind, World.scarce(), seed=5, life=3, steps=700)
+        lines = said.out.splitlines()
+        assert lines[0] == "ORACLE in scarce, physiology decay, seed 5, life 3"
+        assert lines[1].startswith(f"lived {life.lifespan} steps")
+
+    def test_trace_and_figure_are_written(self, animat_says, tmp_path):
+        said = animat_says("life", "--steps", "50", "--trace", "ü b.parquet", "--figure", "c.svg")
+        assert said.code == 0
+        assert names(tmp_path) == ["c.svg", "ü b.parquet"]
+        assert pq.read_table(tmp_path / "ü b.parquet").num_rows == 50
+        again = animat_says("life", "--steps", "20", "--trace", "ü b.parquet", "--force")
+        assert again.code == 0
+        assert pq.read_table(tmp_path / "ü b.parquet").num_rows == 20
+
+    def test_settings_come_from_a_file_and_the_command_line_goes_before(
+        self, animat_says, tmp_path
+    ):
+        (tmp_path / "mine.toml").write_text(
+            '[world]\nlayout = "random"\ncounts = { TS = 1 }\nseed = 3\n'
+            '[mind]\nagent = "RANDOM"\nphysiology = "linear"\n'
+        )
+        said = animat_says("life", "--settings", "mine.toml", "--steps", "9", "--agent", "ORACLE")
+        assert said.out.startswith("ORACLE in random 1 TS, seed 3, physiology linear, seed 0")
+
+
+UNWRITABLE = {
+    "no/a.parquet": "there is no directory no",
+    "directory.parquet": "is a directory",
+    "there.parquet": "is there already; --force replaces it",
+    "a.csv": "give a name that ends in .parquet",
+    "there.parquet/a.parquet": "there is no directory there.parquet",
+    "/proc/a.parquet": "cannot be written",
+    "": "give a name that ends in .parquet",
+}
+
+WRONG = {
+    "life --world abundnt": ['did you mean "abundant"?'],
+    "life --world=": ['world "": no such world'],
+    "life --world none.toml": ["none.toml: no such file"],
+    "life --agent FA": ['"FA": must be one of', 'did you mean "AF"?'],
+    "life --physiology exces": ['did you mean "excess"?'],
+    "life --agent X --physiology Y": ["mind.agent", "mind.physiology"],
+    "life --steps 0": ["steps = 0; allowed"],
+    "life --steps -5": ["steps = -5; allowed"],
+    "life --steps many": ["'--steps'"],
+    "life --seed -1": ["'--seed'"],
+    "life --seed 99999999999999999999999": ["'--seed'"],
+    "life --life -1": ["'--life'"],
+    "life --settings none.toml": ["none.toml: no such file"],
+    "life --settings .": [".: is a directory, not a settings file"],
+    "life --stps 3": ["No such option: --stps", "--steps"],
+    "life extra": ["(extra)"],
+    "lif": ["No such command 'lif'"],
+    "reproduce --lives 1": ["lives = 1; a comparison needs"],
+    "reproduce --lives 1 --seeds 0": ["seeds = 0; Experiment 1 needs", "lives = 1"],
+    "reproduce --steps 0": ["steps = 0; allowed"],
+    "reproduce --seed -1": ["'--seed'"],
+    "reproduce --out there": ["there: is there already; --force replaces it"],
+    "reproduce --quick --out there --force": ["there: is no earlier result"],
+    "reproduce --out there.parquet": ["there.parquet: is a file"],
+    "reproduce --out there.parquet/a": ["cannot be made: Not a directory"],
+    "reproduce --out /proc/a": ["/proc/a: cannot be made"],
+    "reproduce --out . --force": [".: cannot be replaced as a whole"],
+    "reproduce --out / --force": ["/: cannot be replaced as a whole"],
+    "reproduce --settings world.toml": ["Worlds 1 and 2"],
+    "life --settings world.toml": ["do not fit", "60 TL"],
+} | {f"life --steps 9 --trace={path}": [why] for path, why in UNWRITABLE.items()}
+
+
+@pytest.mark.parametrize("command", WRONG)
+def test_what_is_wrong_is_told_in_a_line_and_leaves_nothing_behind(animat_says, tmp_path, command):
+    (tmp_path / "directory.parquet").mkdir()
+    (tmp_path / "there.parquet").touch()
+    (tmp_path / "there").mkdir()
+    (tmp_path / "there" / "mine").touch()
+    (tmp_path / "world.toml").write_text('[world]\nlayout = "random"\ncounts = { TL = 60 }\n')
+    before = names(tmp_path)
+    said = animat_says(*command.split())
+    assert said.code == 2
+    assert said.out == ""
+    assert all(line.startswith("animat: ") for line in said.err.splitlines())
+    assert len(said.err.splitlines()) <= len(WRONG[command])
+    for words in WRONG[command]:
+        assert words in said.err
+    assert "Traceback" not in said.err
+    assert names(tmp_path) == before
+    assert names(tmp_path / "there") == ["mine"]
+
+
+def test_every_mistake_of_a_file_is_a_line(animat_says, tmp_path):
+    (tmp_path / "mine.toml").write_text(
+        "[mind.variables.nutrition]\nrate = -1.0\n[mind]\ngate = 'never'\n"
+        "[robot]\nradius = -3.0\n[mnd]\n"
+    )
+    said = animat_says("life", "--settings", "mine.toml")
+    assert said.code == 2
+    assert sorted(line.split(":")[2].split()[1] for line in said.err.splitlines()) == [
+        "mind.gate",
+        "mind.variables.nutrition.rate",
+        "mnd",
+        "robot.radius",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[mind.variables.nutrition]\nset_point = 3.0\n", "set_point"),
+        ('[mind]\nwander = "none.py:walk"\n', "no such file"),
+        ('[mind]\nwander = "mine.py:walk"\n', "has other arguments"),
+        ('[mind.behaviours.eat]\nserves = "hunger"\nneeds = "eating"\n', 'needs = "eating"'),
+        ("[mind]\nconsumed = true\n", "spare"),
+        ("", "is empty"),
+    ],
+)
+def test_what_does_not_go_together_is_wrong_input_too(animat_says, tmp_path, text, words):
+    (tmp_path / "mine.toml").write_text(text)
+    (tmp_path / "mine.py").write_text("def walk(readings):\n    return 0.0, 0.0\n")
+    said = animat_says("life", "--settings", "mine.toml", "--steps", "9")
+    assert (said.code, said.out) == (2, "")
+    assert words in said.err.splitlines()[-1]
+    assert "Traceback" not in said.err
+
+
+@pytest.mark.parametrize("arguments", [("--debug", "life"), ("life", "--debug")])
+def test_debug_shows_where_an_error_came_from(animat_says, arguments):
+    assert animat_says(*arguments, "--steps", "9").code == 0
+    said = animat_says(*arguments, "--steps", "0")
+    assert said.code == 2
+    assert said.err.startswith("Traceback")
+    assert said.err.endswith("\nanimat: steps = 0; allowed are whole numbers from 1 to 2^50\n")
+
+
+@pytest.mark.parametrize("error", [ZeroDivisionError("by\nnought"), OSError(5, "broken disk")])
+def test_a_mistake_of_ours_is_one_line_and_code_1(animat_says, monkeypatch, error):
+    def fails(*_):
+        raise error
+
+    monkeypatch.setattr("animat.study.one_life.live_one", fails)
+    said = animat_says("life")
+    assert (said.code, said.out) == (1, "")
+    (line,) = said.err.splitlines()
+    assert line.startswith(f"animat: {type(error).__name__}: ")
+    assert line.endswith("(--debug shows where)")
+
+
+def test_help_names_the_commands_and_their_options(animat_says):
+    assert {"reproduce", "life"} <= set(animat_says("--help").out.split())
+    for command, options in {
+        "reproduce": "lives seeds steps physiology seed out settings quick force debug",
+        "life": "world agent physiology seed life steps settings trace figure force debug",
+    }.items():
+        said = animat_says(command, "--help")
+        assert said.code == 0
+        for option in options.split():
+            assert f"--{option}" in said.out
+
+
+class TestReproduce:
+    def test_it_prints_claims_and_cells_and_writes_everything(
+        self, animat_says, monkeypatch, tmp_path
+    ):
+        said = animat_says("reproduce", *SMALL, "--seed", "7", "--physiology", "linear")
+        assert said.code == 0
+        for words in (*(f"C{n}" for n in range(1, 8)), "abundant", "scarce", "BLIND", "AF"):
+            assert words in said.out
+        assert "results/reproduction/report.html" in said.out.splitlines()[-1]
+        assert "Experiment 2, lives: 8 of 8" in said.err
+        assert "Figures and page: 8 of 8" in said.err
+        out = tmp_path / "results" / "reproduction"
+        made = json.loads((out / "how_made.json").read_text())
+        assert made["command"] == "animat reproduce " + " ".join(
+            (*SMALL, "--seed", "7", "--physiology", "linear")
+        )
+        assert (made["seed"], made["lives"], made["robots"], made["steps"]) == (7, 2, 1, 60)
+        assert 'physiology = "linear"' in (out / "settings.toml").read_text()
+
+        settings = str(out / "settings.toml")
+        command = ("reproduce", *SMALL, "--seed", "7", "--settings", settings)
+        assert animat_says(*command, "--out", "again").code == 0
+        for name in ("lives.parquet", "claims.json", "settings.toml", "figure3_grasp.svg"):
+            assert (tmp_path / "again" / name).read_bytes() == (out / name).read_bytes()
+
+        monkeypatch.setattr(animat.study.publication, "publish", briefly)
+        assert animat_says("reproduce", *SMALL).code == 2
+        assert (out / "lives.parquet").is_file()
+        assert animat_says("reproduce", *SMALL, "--force").code == 0
+        assert names(out) == ["report.html"]
+        assert names(tmp_path / "results") == ["reproduction"]
+
+    def test_quick_is_small_and_may_be_changed(self, animat_says, monkeypatch):
+        sizes = []
+
+        def run(settings, *, seed, size, tell):
+            sizes.append(size)
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr("animat.study.reproduction.reproduce", run)
+        for options in ((), ("--quick",), ("--quick", "--lives", "7"), ("--seeds", "3")):
+            assert animat_says("reproduce", *options).code == 130
+        full, quick, changed, seeds = sizes
+        assert full == (100, 1_000, 300_000)
+        assert quick.lives < 100
+        assert changed == quick._replace(lives=7)
+        assert seeds == full._replace(robots=3)
+
+    def test_an_interruption_leaves_everything_as_it_was(self, animat_says, monkeypatch, tmp_path):
+        old = tmp_path / "results" / "reproduction"
+        old.mkdir(parents=True)
+        (old / "how_made.json").write_text("old")
+
+        def interrupted(result, directory, tell):
+            (directory / "lives.parquet").touch()
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr(animat.study.publication, "publish", interrupted)
+        for options in (("--force",), ("--out", "new/one")):
+            said = animat_says("reproduce", *SMALL, *options)
+            assert (said.code, said.out) == (130, "")
+            assert said.err.endswith("animat: interrupted; nothing is half-written\n")
+        assert names(tmp_path) == ["results"]
+        assert names(tmp_path / "results") == ["reproduction"]
+        assert names(old) == ["how_made.json"]
+
+
+def started(directory: Path) -> bool:
+    """Whether a run has begun to fill a directory of its own."""
+    return any(path.name.startswith(".out.partial-") for path in directory.iterdir())
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGKILL])
+def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name(
+    sent, tmp_path, animat_says, monkeypatch
+):
+    run = start("reproduce", "--lives", "1000000", "--out", "out", cwd=tmp_path)
+    while not started(tmp_path):
+        assert run.poll() is None
+        time.sleep(0.02)
+    time.sleep(0.3)
+    run.send_signal(sent)
+    out, err = run.communicate(timeout=60)
+    assert out == ""
+    assert "Traceback" not in err
+    assert not (tmp_path / "out").exists()
+    if sent == signal.SIGINT:
+        # A shell shows 130 for either: Python dies of the signal where it hit an `exec`.
+        assert run.returncode in {130, -signal.SIGINT}
+        assert err.endswith("animat: interrupted; nothing is half-written\n")
+        assert names(tmp_path) == []
+    else:
+        monkeypatch.setattr(animat.study.publication, "publish", briefly)
+        assert animat_says("reproduce", *SMALL, "--out", "out").code == 0
+        assert (tmp_path / "out" / "report.html").is_file()
+
+
+def test_a_reader_that_stops_reading_is_no_error_to_talk_of(tmp_path):
+    run = start("life", "--steps", "9", cwd=tmp_path)
+    assert run.stdout is not None
+    run.stdout.close()
+    run.stdout = None
+    _, err = run.communicate(timeout=60)
+    assert run.returncode == 1
+    assert err.splitlines()[1:] == []
+    assert "Life, steps: 9 of 9" in err
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device here")
+def test_a_full_disk_behind_the_output_is_an_error(tmp_path):
+    with Path("/dev/full").open("w") as full:
+        run = subprocess.run(
+            [sys.executable, "-m", "animat", "life", "--steps", "9"],
+            cwd=tmp_path,
+            env={
+                **os.environ,
+                "PYTHONPATH": os.pathsep.join(sys.path),
+                "PYTHONIOENCODING": "ascii",
+            },
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert run.returncode == 1
+    assert "No space left on device" in run.stderr.splitlines()[-1]
