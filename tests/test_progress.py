@@ -1,0 +1,108 @@
+"""What is told of long work: plain lines to a file, bars on a terminal."""
+
+import io
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from animat import progress
+from animat.progress import LINE_EVERY, telling
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def monotonic(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    clock = Clock()
+    monkeypatch.setattr(progress, "time", clock)
+    return clock
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_finished_task_is_one_line(capsys, clock):
+    with telling() as tell:
+        tell("Lives", 400, 1_000)
+        clock.now += 1.0
+        tell("Lives", 600, 1_000)
+    out, err = capsys.readouterr()
+    assert err == "Lives: 1,000 of 1,000, 1 s\n"
+    assert out == ""
+
+
+def test_long_work_is_told_now_and_then_with_the_time_left(capsys, clock):
+    with telling() as tell:
+        for _ in range(20):
+            tell("Lives", 5, 1_000)
+            clock.now += 1.0
+        tell("Lives", 900, 1_000)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines == [
+        "Lives: 30 of 1,000, 162 s left",
+        "Lives: 55 of 1,000, 172 s left",
+        "Lives: 80 of 1,000, 172 s left",
+        "Lives: 1,000 of 1,000, 20 s",
+    ]
+    assert LINE_EVERY == 5.0
+
+
+def test_tasks_are_told_apart(capsys, clock):
+    with telling() as tell:
+        tell("One", 1, 2)
+        tell("Two", 2, 2)
+        tell("One", 1, 2)
+    assert capsys.readouterr().err == "Two: 2 of 2, 0 s\nOne: 2 of 2, 0 s\n"
+
+
+def test_nothing_done_yet_divides_nothing(capsys, clock):
+    with telling() as tell:
+        tell("Lives", 0, 10)
+        clock.now += 6.0
+        tell("Lives", 0, 10)
+    assert capsys.readouterr().err == "Lives: 0 of 10, 60 s left\n"
+
+
+def test_threads_may_tell_at_once(capsys):
+    with telling() as tell, ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda _: tell("Lives", 1, 5_000), range(5_000)))
+    assert capsys.readouterr().err.startswith("Lives: 5,000 of 5,000")
+
+
+def test_a_terminal_gets_bars(monkeypatch):
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setenv("TERM", "xterm")
+    with telling() as tell, ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda _: tell("Lives", 1, 100), range(100)))
+        tell("Statistics", 1, 3)
+    shown = terminal.getvalue()
+    assert "Lives" in shown
+    assert "100/100" in shown
+    assert "1/3" in shown
+    assert "left" in shown
+
+
+def test_bars_go_away_with_an_error(monkeypatch):
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setenv("TERM", "xterm")
+
+    def interrupted():
+        with telling() as tell:
+            tell("Lives", 1, 3)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    # The cursor is shown again.
+    assert terminal.getvalue().rstrip().endswith("\x1b[?25h")
