@@ -1,0 +1,227 @@
+"""The documentation: what it shows runs, and it names every setting with its default."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Literal, NamedTuple, get_args, get_origin
+
+import annotated_types
+import pytest
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from animat.life.setting import bring_together
+from animat.mind.functions import SIGNATURES
+from animat.mind.mind import Behaviour, Drive, Learning, Mind, VariableChange
+from animat.mind.physiology import PHYSIOLOGIES, Variable
+from animat.robot.khepera import Khepera
+from animat.settings import Settings, SettingsError, read_toml
+from animat.study.settings import StudySettings, WorldChoice
+from animat.world.world import World
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+SMALLER = {"steps=300_000": "steps=2_000", "lives=1_000": "lives=4", "lives=100": "lives=4"}
+"""How much of what a page shows is run here."""
+
+WORLD_FILE = "the file of a world"
+WRITTEN_OUT = "these are the defaults, written out:"
+
+
+class Block(NamedTuple):
+    """Something shown in a page: its language, its text, and the paragraph before it."""
+
+    language: str
+    text: str
+    before: str
+
+
+def blocks(page: Path) -> list[Block]:
+    found = re.finditer(r"^```(\w*)\n(.*?)^```$", page.read_text("utf-8"), re.DOTALL | re.MULTILINE)
+    return [Block(m[1], m[2], m.string[: m.start()].rstrip().rsplit("\n\n", 1)[-1]) for m in found]
+
+
+def shown(language: str) -> list[Any]:
+    return [
+        pytest.param(block, id=f"{page.name}-{number}")
+        for page in PAGES
+        for number, block in enumerate(blocks(page))
+        if block.language == language
+    ]
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch) -> Path:
+    """A folder of its own in which the paths of the pages hold."""
+    (tmp_path / "docs").symlink_to(ROOT / "docs")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize("block", shown("toml"))
+def test_every_file_shown_is_accepted(here, block):
+    file = here / "shown.toml"
+    file.write_text(block.text)
+    if WORLD_FILE in block.text:
+        assert World.load(file).n_objects > 0
+        return
+    settings = read_toml(file, StudySettings)
+    bring_together(settings.mind, settings.world.world(), settings.robot)
+    if block.before.endswith(WRITTEN_OUT):
+        assert settings == StudySettings()
+        assert settings.mind.model_fields_set | settings.robot.model_fields_set
+
+
+def test_what_is_said_to_be_written_out_is():
+    settings = ROOT / "docs" / "settings.md"
+    assert sum(block.before.endswith(WRITTEN_OUT) for block in blocks(settings)) == 2
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_program_shown_runs_and_says_what_is_shown(here, capsys, page):
+    """The programs of a page share their names, as they would in a notebook."""
+    names: dict[str, Any] = {"__name__": "shown"}
+    shown_here = blocks(page)
+    for number, (language, text, _) in enumerate(shown_here):
+        if language != "python":
+            continue
+        for large, small in SMALLER.items():
+            text = text.replace(large, small)  # noqa: PLW2901
+        file = here / f"shown_{number}.py"
+        file.write_text(text)
+        capsys.readouterr()
+        following = shown_here[number + 1] if number + 1 < len(shown_here) else Block("", "", "")
+        answer = following.text if following.language == "text" else None
+        try:
+            exec(compile(text, file, "exec"), names)
+            said = capsys.readouterr().out
+        except SettingsError as error:
+            if answer is None:
+                raise
+            said = f"{error}\n"
+        assert answer in {None, said}
+
+
+def test_the_python_of_the_readme_is_run_small():
+    (program, *_) = (block for block in blocks(ROOT / "README.md") if block.language == "python")
+    assert "steps=300_000" in program.text
+    assert "lives=1_000" in program.text
+
+
+def test_every_link_leads_somewhere():
+    for page in PAGES:
+        for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text("utf-8")):
+            if "://" not in target and not re.search(r"images/|reproduction\.md", target):
+                assert (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+TABLES: dict[str, tuple[type[Settings], type[Settings]]] = {
+    "[world]": (WorldChoice, WorldChoice),
+    "[robot]": (Khepera, Khepera),
+    "[mind]": (Mind, Mind),
+    "[mind.variables.NAME]": (VariableChange, Variable),
+    "[mind.drives.NAME]": (Drive, Drive),
+    "[mind.behaviours.NAME]": (Behaviour, Behaviour),
+    "[mind.learning]": (Learning, Learning),
+}
+"""Under which heading which settings stand, and which model has their defaults."""
+
+
+COLUMNS = 4
+"""Of a table of settings: name, default, allowed, what it means."""
+
+
+def rows(heading: str) -> dict[str, list[str]]:
+    """The settings in the tables of a section: default, allowed and meaning by name."""
+    text = (ROOT / "docs" / "settings.md").read_text("utf-8")
+    section = text.split(f"\n## `{heading}`\n")[1].split("\n## ")[0]
+    lines = [line for line in section.splitlines() if line.startswith("| `")]
+    cells = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines]
+    return {row[0].strip("`"): row[1:] for row in cells if len(row) == COLUMNS and row[0].islower()}
+
+
+@pytest.mark.parametrize("heading", TABLES)
+def test_every_setting_is_documented_with_its_default(heading):
+    model, defaults = TABLES[heading]
+    documented = rows(heading)
+    assert set(documented) == set(model.model_fields)
+    for name, (default, allowed, meaning) in documented.items():
+        assert default == written(defaults.model_fields[name]), name
+        for word in limits(model.model_fields[name]):
+            assert re.search(rf"(?<![\w.]){re.escape(word)}(?![\w])", allowed), (name, word)
+        assert meaning
+
+
+def written(field: FieldInfo) -> str:
+    """A default as the page has it."""
+    if field.is_required():
+        return "required"
+    default = field.get_default(call_default_factory=True)
+    if default is None:
+        return "left out"
+    if default != {} and isinstance(default, dict | tuple | BaseModel):
+        return "below"
+    if isinstance(default, bool):
+        return f"`{str(default).lower()}`"
+    if isinstance(default, str):
+        return f'`"{default}"`'
+    return f"`{default}`"
+
+
+def limits(field: FieldInfo) -> Iterator[str]:
+    """What the page must say of what is allowed."""
+    options = [field.annotation, *get_args(field.annotation)]
+    metadata = [*field.metadata, *(m for o in options for m in getattr(o, "__metadata__", ()))]
+    for option in options:
+        if get_origin(option) is Literal:
+            yield from (f'"{choice}"' for choice in get_args(option))
+        if option is bool:
+            yield from ("true", "false")
+    for inner in list(metadata):
+        if isinstance(inner, FieldInfo):
+            metadata += inner.metadata
+    for limit in metadata:
+        if isinstance(limit, annotated_types.Ge):
+            yield f"{limit.ge:g}"
+        if isinstance(limit, annotated_types.Gt):
+            yield f"above {limit.gt:g}"
+        if isinstance(limit, annotated_types.Le):
+            yield f"{limit.le:g}"
+        if isinstance(limit, annotated_types.Lt):
+            yield f"below {limit.lt:g}"
+
+
+def test_the_physiologies_are_as_documented():
+    text = (ROOT / "docs" / "settings.md").read_text("utf-8")
+    for name, variables in PHYSIOLOGIES.items():
+        margins = {variable.lethal_margin for variable in variables.values()}
+        (margin,) = margins
+        laws = " | ".join(f"`{variable.law}`" for variable in variables.values())
+        assert f"| `{name}` | {laws} | {f'{margin:g}' if margin else 'none'} |" in text
+        assert [v.rate for v in variables.values()] == [1e-4, 1e-4, 1e-3]
+        assert [v.set_point for v in variables.values()] == [0.9, 0.2, 0.1]
+
+
+def test_every_signature_is_documented():
+    text = (ROOT / "docs" / "functions.md").read_text("utf-8")
+    for role, signature in SIGNATURES.items():
+        assert re.search(rf"^\| {role} \| `mind\.\S+` \| `{re.escape(signature)}` \|$", text, re.M)
+
+
+def test_a_file_of_the_examples_is_accepted(here):
+    examples = sorted((ROOT / "docs" / "examples").glob("*.toml"))
+    assert examples
+    for file in examples:
+        assert read_toml(file, StudySettings).mind.functions()
+
+
+def test_toml_of_numbers_is_what_it_says():
+    """The defaults of the tables can be written into a file as they stand."""
+    for heading in TABLES:
+        for name, (default, *_) in rows(heading).items():
+            if default.startswith("`"):
+                assert name in tomllib.loads(f"{name} = {default.strip('`')}")
