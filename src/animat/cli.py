@@ -27,6 +27,7 @@ app = typer.Typer(
     help="A laboratory for motivated robots: reproduce the paper of 2003, live a life.",
     no_args_is_help=True,
     add_completion=False,
+    rich_markup_mode=None,  # to load rich would take most of the time of --help
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
