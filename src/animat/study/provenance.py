@@ -17,7 +17,7 @@ def provenance() -> dict[str, object]:
     """Return when, where, with what and by which command this process works."""
     return {
         "made": datetime.now(UTC).isoformat(timespec="seconds"),
-        "command": shlex.join(["animat", *sys.argv[1:]]),
+        "command": shlex.join([_program(), *sys.argv[1:]]),
         "versions": {"python": platform.python_version()}
         | {name: _version(name) for name in PACKAGES},
         "machine": {
@@ -26,6 +26,12 @@ def provenance() -> dict[str, object]:
             "cores": os.cpu_count(),
         },
     }
+
+
+def _program() -> str:
+    """Return the name this process was called by, `animat` also for `python -m animat`."""
+    program = Path(sys.argv[0])
+    return program.parent.name if program.name == "__main__.py" else program.name
 
 
 def _version(package: str) -> str:

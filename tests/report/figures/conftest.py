@@ -22,7 +22,7 @@ def make_trace(steps=4000, seed=1, start=0):
     level = [0.55, 0.45, 0.3]
     behaviour = np.full(steps, "wander", dtype=object)
     thing = np.full(steps, None, dtype=object)
-    event = np.full(steps, None, dtype=object)
+    event = np.full(steps, "", dtype=object)
     reward = np.zeros(steps, dtype=np.int64)
     likelihoods = {name: np.empty(steps) for name in BEHAVIOURS}
     now = {"eat": 0.9, "shelter": 0.1, "interact": 0.97}
@@ -51,7 +51,7 @@ def make_trace(steps=4000, seed=1, start=0):
                     level[number] += 0.2 * sign * (1 if good else -1)
                     level[number] = float(np.clip(level[number], 0.02, 0.98))
                     reward[t] = 1 if good else -1
-                    event[t] = "success" if good else "failure"
+                    event[t] = "success trained" if good else "failure trained"
                     phase, left = "leave", 15
                 else:
                     phase, left = "", 0

@@ -39,6 +39,20 @@ _BEHAVIOURS = {
 }
 
 
+_EVENTS = (
+    "encounter",
+    "reached",
+    "success",
+    "failure",
+    "disregarded",
+    "unreached",
+    "blocked",
+    "trained",
+    "death",
+)
+"""What is marked, from top to bottom; a step's events are joined by blanks."""
+
+
 @styled
 def life_figure(
     trace: pa.Table,
@@ -121,9 +135,10 @@ def _strip(ax: Axes, rows: pa.Table) -> list[Patch]:
 def _events(ax: Axes, trace: pa.Table) -> None:
     step = column(trace, "step")
     event = column(trace, "event")
-    names = [name for name in dict.fromkeys(event.tolist()) if name]
+    told = {text: set(text.split()) for text in dict.fromkeys(event.tolist())}
+    names = [name for name in _EVENTS if any(name in several for several in told.values())]
     for level, name in enumerate(names):
-        at = step[event == name]
+        at = step[np.isin(event, [text for text, several in told.items() if name in several])]
         ax.plot(at, np.full(at.size, level), "|", color=BLACK, ms=6, mew=0.8, clip_on=False)
     ax.set_yticks(range(len(names)), names)
     ax.set_ylim(len(names) - 0.4, -0.6)
