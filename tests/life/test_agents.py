@@ -29,13 +29,9 @@ def lived(agent, world, **settings):
     return live(Mind(agent=agent, **settings), world, seed=2, steps=STEPS, record="all")
 
 
-def happened(c, event):
-    return np.array([event in text.split() for text in c["event"]])
-
-
 def encounters(c):
     """(step, object type, winning drive, behaviour acted out or None) of every encounter."""
-    met = np.flatnonzero(happened(c, "encounter"))
+    met = np.flatnonzero(c.happened("encounter"))
     for t, until in zip(met, [*met[1:], len(c["step"])], strict=True):
         acted = [doing for doing in c["behaviour"][t:until] if doing in BEHAVIOURS]
         yield int(t), c["object"][t], c["winning_drive"][t], (acted or [None])[0]
@@ -70,7 +66,7 @@ def test_af_acts_only_where_its_networks_see_a_chance(small, columns, trained):
     c = columns(life)
     told = complete(c)
     assert len(told) > 20
-    disregarded = happened(c, "disregarded")
+    disregarded = c.happened("disregarded")
     for t, kind, drive, acted in told:
         likelihood = trained.likelihoods(FEATURES[kind])[SERVES[drive]]
         assert c[f"likelihood_{SERVES[drive]}"][t] == pytest.approx(likelihood, rel=1e-12)
@@ -105,7 +101,7 @@ def test_learning_is_blind_and_trains_as_it_lives(small, columns):
     for name in ("x", "y", "heading", "nutrition", "stamina", "restlessness", "behaviour"):
         assert np.array_equal(c[name], b[name]), name  # it lives as BLIND does
     assert life.state.trainings == life.state.acts > 0
-    assert np.array_equal(happened(c, "trained"), c["reward"] != 0)
+    assert np.array_equal(c.happened("trained"), c["reward"] != 0)
     assert not np.array_equal(life.state.weights, blind.state.weights)
     assert blind.state.trainings == 0
     assert life.state.disregarded == 0
@@ -125,7 +121,7 @@ def test_oracle_knows_table_1(small, columns):
     life = lived("ORACLE", small)
     c = columns(life)
     told = complete(c)
-    disregarded = happened(c, "disregarded")
+    disregarded = c.happened("disregarded")
     for t, kind, drive, _ in told:
         afforded = kind in AFFORDS[SERVES[drive]]
         assert disregarded[t] == (not afforded)
@@ -171,7 +167,7 @@ def test_blind_and_af_of_one_seed_live_alike_until_one_judges_otherwise(
         columns(live(Mind(**settings, **own), small, seed=seed, steps=STEPS, record="all"))
         for own in ({"agent": "BLIND"}, {"agent": "AF", "networks": trained})
     )
-    parting = np.flatnonzero(happened(af, "disregarded"))[0]
+    parting = np.flatnonzero(af.happened("disregarded"))[0]
     told = [name for name in blind if not name.startswith("likelihood")]
     for name in told:
         assert np.array_equal(blind[name][:parting], af[name][:parting]), name

@@ -5,30 +5,27 @@ from itertools import product
 
 import numpy as np
 import pytest
+import shapely
 
 from animat.life.life import live
+from animat.life.setting import bring_together
 from animat.life.state import NO_SITE
 from animat.mind.behaviours import ACT, LEAVE, WANDER
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
 from animat.robot.khepera import Khepera
+from animat.world.arena import Arena
+from animat.world.layout import Layout, Placement
+from animat.world.world import World
 
 VARIABLES = ("nutrition", "stamina", "restlessness")
 NEEDS = list(product(VARIABLES, ("deficit", "excess")))
 SERVED_BY = {"nutrition": "eat", "stamina": "shelter", "restlessness": "interact"}
 DRIVE_OF = {"nutrition": "hunger", "stamina": "fatigue", "restlessness": "curiosity"}
 
+SMALL = Arena(width=560.0, height=560.0)
+
 REACH = 57.5  # mm, of the robot's radius and the encounter range
-
-
-def runs(mask):
-    """Return (first, last) of every run of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
-    return [(first, last - 1) for first, last in zip(edges[::2], edges[1::2], strict=True)]
-
-
-def happened(c, event):
-    return np.array([event in text.split() for text in c["event"]])
 
 
 def mirrored(value, kind):
@@ -212,9 +209,9 @@ def test_the_choice_holds_until_the_interaction_ends(small, columns):
     mind = Mind(variables=variables, death=False, interaction_steps=100, success_effect=0.9)
     c = columns(live(mind, small, steps=30_000, record="all"))
     acting = ~np.isin(c["behaviour"], ["wander", "approach", "leave"])
-    chosen = [c["behaviour"][first] for first, _ in runs(acting)]
+    chosen = [c["behaviour"][first] for first, _ in c.runs(acting)]
     assert len(set(chosen)) > 1
-    for first, last in runs(acting):
+    for first, last in c.runs(acting):
         assert len(set(c["behaviour"][first : last + 1])) == 1
     wins = np.array([DRIVE_OF[v] for v in VARIABLES])
     served = {behaviour: wins[n] for n, behaviour in enumerate(SERVED_BY.values())}
@@ -227,12 +224,12 @@ def test_the_outcome_comes_at_the_end_of_the_interaction(interaction_steps, smal
     mind = Mind(death=False, interaction_steps=interaction_steps)
     c = columns(live(mind, small, steps=8_000, record="all"))
     acting = ~np.isin(c["behaviour"], ["wander", "approach", "leave"])
-    ended = [run for run in runs(acting) if run[1] < len(acting) - 1]
+    ended = [run for run in c.runs(acting) if run[1] < len(acting) - 1]
     assert len(ended) > 5
-    outcomes = np.flatnonzero(happened(c, "success") | happened(c, "failure"))
+    outcomes = np.flatnonzero(c.happened("success") | c.happened("failure"))
     for first, last in ended:
         assert last - first + 1 == interaction_steps
-        assert happened(c, "reached")[first - 1]
+        assert c.happened("reached")[first - 1]
         assert last in outcomes
         assert (c["reward"][first:last] == 0).all()
         assert np.ptp(c["x"][first : last + 2]) == 0.0
@@ -243,15 +240,15 @@ def test_the_outcome_comes_at_the_end_of_the_interaction(interaction_steps, smal
 def test_who_does_not_reach_an_object_in_time_gives_up_without_an_outcome(small, columns):
     life = live(Mind(death=False, approach_steps=4), small, steps=8_000, record="all")
     c = columns(life)
-    approaches = [run for run in runs(c["behaviour"] == "approach") if run[1] < 7_999]
+    approaches = [run for run in c.runs(c["behaviour"] == "approach") if run[1] < 7_999]
     assert len(approaches) > 10
     for first, last in approaches:
         assert last - first + 1 == 4
-        assert happened(c, "encounter")[first]
+        assert c.happened("encounter")[first]
         assert c["event"][last].split()[0] == "unreached"
         assert c["behaviour"][last + 1] == "leave"
         assert c["site"][last + 1] == c["site"][last]
-    assert life.state.unreached == np.count_nonzero(happened(c, "unreached")) == len(approaches)
+    assert life.state.unreached == np.count_nonzero(c.happened("unreached")) == len(approaches)
     assert (life.state.acts, np.count_nonzero(c["reward"])) == (0, 0)
     served = c["nutrition"] * np.exp(1e-4 * (c["step"] + 1))
     assert served == pytest.approx(0.5, rel=1e-9)  # no outcome moved it
@@ -260,7 +257,7 @@ def test_who_does_not_reach_an_object_in_time_gives_up_without_an_outcome(small,
 def test_leaving_turns_the_back_on_the_object_on_the_spot(small, columns):
     life = live(Mind(death=False), small, steps=20_000, record="all")
     c = columns(life)
-    left = [run for run in runs(c["behaviour"] == "leave") if run[1] < 19_999]
+    left = [run for run in c.runs(c["behaviour"] == "leave") if run[1] < 19_999]
     assert len(left) > 20
     raster = life.setting.raster
     behind = 0
@@ -280,7 +277,9 @@ def test_leaving_turns_the_back_on_the_object_on_the_spot(small, columns):
 
 def test_leaving_takes_no_longer_than_leave_steps(small, columns):
     c = columns(live(Mind(death=False, leave_steps=6), small, steps=8_000, record="all"))
-    lengths = [last - first + 1 for first, last in runs(c["behaviour"] == "leave") if last < 7_999]
+    lengths = [
+        last - first + 1 for first, last in c.runs(c["behaviour"] == "leave") if last < 7_999
+    ]
     assert len(lengths) > 5
     assert set(lengths) == {6}
 
@@ -295,7 +294,7 @@ def test_an_abandoned_object_is_met_again_only_after_it_was_out_of_range(seed, c
     places = (c["x"] / raster.resolution + raster.border).astype(int)
     near = raster.near_site[rows, places]
     away = raster.near_distance[rows, places]
-    met = happened(c, "encounter")
+    met = c.happened("encounter")
     abandoned: set[int] = set()
     blocked_by_memory = 0
     for t in range(len(met)):
@@ -316,9 +315,6 @@ def test_an_abandoned_object_is_met_again_only_after_it_was_out_of_range(seed, c
 
 @pytest.fixture(scope="module")
 def crowded():
-    from animat.world.arena import Arena
-    from animat.world.world import World
-
     counts = {"TS": 3, "TL": 2, "CS": 3, "CL": 2}
     return World.random(counts, seed=4, arena=Arena(width=760.0, height=760.0), gap=64.0)
 
@@ -346,6 +342,27 @@ def test_objects_that_were_used_up_stand_elsewhere_out_of_sight(spared, step_by_
         elif before is not None:
             assert state.successes == before[0].successes
         before = (state, present)
+    assert moves > 10
+
+
+def test_no_object_appears_within_sight(step_by_step):
+    """Of two spare places one lies beside the object that is used up."""
+    layout = Layout(
+        placements=(Placement(type="CS", x=200.0, y=280.0),),
+        spares=(Placement(type="CS", x=270.0, y=280.0), Placement(type="CS", x=450.0, y=280.0)),
+        arena=SMALL,
+        minimum_gap=25.0,
+    )
+    world = World(layout=layout)
+    outlines = [shapely.Polygon(corners) for corners in world.polygons()]
+    mind = Mind(death=False, consumed=True, gate="always", selector="random")
+    before, moves = None, 0
+    for state, present in step_by_step(mind, world, 20_000):
+        if before is not None and not np.array_equal(before, present):
+            [new] = np.flatnonzero(present & ~before)
+            assert shapely.distance(outlines[new], shapely.Point(state.x, state.y)) > REACH
+            moves += 1
+        before = present
     assert moves > 10
 
 
@@ -386,7 +403,7 @@ def test_an_object_is_accepted_from_the_likelihood_threshold_on(
 def test_a_likelihood_holds_its_last_value_while_its_behaviour_is_not_run(small, columns):
     life = live(Mind(agent="LEARNING"), small, steps=15_000, record="all")
     c = columns(life)
-    met = happened(c, "encounter")
+    met = c.happened("encounter")
     chosen = {behaviour: set() for behaviour in SERVED_BY.values()}
     for t in np.flatnonzero(met):
         after = c["behaviour"][t + 1 :]
@@ -474,10 +491,6 @@ def test_training_follows_the_drive_not_the_success(affording):
 
 def test_no_life_starts_upon_an_object_however_small(crowded):
     """A small object fits between the points of the collision ring: 23 mm lie between them."""
-    import shapely
-
-    from animat.life.setting import bring_together
-
     lives = np.arange(20_000, dtype=np.uint64)
     states, _ = bring_together(Mind(), crowded, Khepera()).begin(7, lives)
     objects = shapely.union_all([shapely.Polygon(corners) for corners in crowded.polygons()])

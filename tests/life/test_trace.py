@@ -57,10 +57,6 @@ def c(life, columns):
     return columns(life)
 
 
-def happened(c, event):
-    return np.array([event in text.split() for text in c["event"]])
-
-
 # --- what is recorded -------------------------------------------------------------------------
 
 
@@ -234,7 +230,7 @@ def test_the_robot_moves_by_its_motors_and_the_noise_of_the_step(life, c, poses,
     ended, hits = np.zeros((STEPS, 3)), np.zeros(STEPS, np.int64)
     setting = life.setting
     bump(poses, moved, setting.robot_parameters, setting.raster, present, ended, hits)
-    blocked = happened(c, "blocked")
+    blocked = c.happened("blocked")
     assert np.array_equal(blocked, hits != CLEAR)
     free = np.flatnonzero(~blocked[:-1])
     gone = poses[free + 1] - moved[free]
@@ -322,7 +318,7 @@ def test_the_summary_counts_the_events(life, c):
         "trainings": "trained",
     }
     for column, event in told.items():
-        assert counted[column] == happened(c, event).sum(), column
+        assert counted[column] == c.happened(event).sum(), column
     assert counted["acts"] == np.count_nonzero(c["reward"])
     for behaviour in BEHAVIOURS:
         own = c["reward"][c["behaviour"] == behaviour]

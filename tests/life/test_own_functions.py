@@ -1,0 +1,154 @@
+"""A mind of another size, and a mind made of the user's own functions."""
+
+import numpy as np
+import pytest
+
+DRIVES = {
+    "hunger": {"a": {"nutrition": 1.0}},
+    "fatigue": {"a": {"stamina": 1.0}},
+    "curiosity": {"a": {"restlessness": 1.0}},
+}
+
+BEHAVIOURS = {
+    "eat": {"serves": "hunger", "needs": "grasp"},
+    "shelter": {"serves": "fatigue", "needs": "shelter"},
+    "interact": {"serves": "curiosity", "needs": "interact"},
+}
+
+
+@pytest.fixture(scope="module")
+def larger(lived):
+    """Four variables, drives and behaviours, and three hidden units."""
+    return lived(
+        agent="LEARNING",
+        variables={"warmth": {"law": "linear", "kind": "deficit", "rate": 2e-4, "set_point": 0.9}},
+        drives=DRIVES | {"chill": {"a": {"warmth": 3.0}}},
+        behaviours=BEHAVIOURS | {"bask": {"serves": "chill", "needs": "shelter"}},
+        learning={"hidden_units": 3},
+        steps=4_000,
+    )
+
+
+def test_mind_drives(larger):
+    assert np.allclose(larger["chill"], 3.0 * (0.9 - larger["warmth"]))
+    assert "chill" in larger["winning_drive"]
+
+
+def test_mind_behaviours(larger):
+    told = [one for one in larger.acts() if one[0] == "bask"]
+    assert told
+    assert all((reward == 1) == (kind in ("TL", "CL")) for _, kind, reward, _ in told)
+    assert all(drive == "chill" for *_, drive in told)
+    assert len(larger.life.networks.behaviours) == 4
+
+
+def test_learning_hidden_units(larger):
+    networks = larger.life.networks
+    assert networks.weights.shape == (4, 3 * 3 + 4)
+    features = np.array([1.0, 0.0])
+    told = networks.likelihoods({"shape": 1.0, "size": 0.0})
+    for b, behaviour in enumerate(networks.behaviours):
+        units = networks.weights[b, :9].reshape(3, 3)
+        hidden = 1 / (1 + np.exp(-(units[:, 0] + units[:, 1:] @ features)))
+        output = networks.weights[b, 9] + networks.weights[b, 10:] @ hidden
+        assert told[behaviour] == pytest.approx(1 / (1 + np.exp(-output)), rel=1e-13)
+
+
+def still(value, low, high, rate, factor):
+    return value + rate
+
+
+def fixed(values, changes, set_points, senses, a, b, out):
+    for d in range(len(out)):
+        out[d] = 0.25 + 0.125 * d
+
+
+def second(drives, likelihoods, serves, luck):
+    return 1
+
+
+def sure(features, weights, hidden):
+    return 0.625 + weights[0]
+
+
+def note(features, weights, hidden, target, rate, cycles, biases):
+    weights[0] = 0.0625
+    weights[1] += 1.0
+
+
+def circle(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+    memory[0] += 1.0
+    return 4.0, 6.0
+
+
+@pytest.fixture(scope="module")
+def own(lived):
+    """A mind made of the user's own functions only."""
+    rising = {"law": still, "kind": "excess"}
+    return lived(
+        agent="LEARNING",
+        variables={"stamina": rising, "nutrition": {"law": still, "kind": "deficit"}},
+        drive_function=fixed,
+        selector=second,
+        wander=circle,
+        learning={"estimator": sure, "learner": note, "threshold": 0.0},
+        encounter_range=150.0,
+        steps=6_000,
+    )
+
+
+def test_a_law_of_ones_own_is_followed(own):
+    own.drifted("stamina", lambda n: 0.5 + 1e-4 * n)
+    own.drifted("nutrition", lambda n: 0.5 + 1e-4 * n)
+    own.drifted("restlessness", lambda n: 0.5 * np.exp(1e-3 * n))
+
+
+def test_mind_drive_function(own):
+    for drive, value in (("hunger", 0.25), ("fatigue", 0.375), ("curiosity", 0.5)):
+        assert (own[drive] == value).all()
+    assert set(own["winning_drive"]) == {"curiosity"}
+
+
+def test_a_selector_of_ones_own_chooses(own):
+    told = {behaviour for behaviour, *_ in own.acts()}
+    assert told == {"shelter"}
+
+
+def test_mind_wander(own, usual):
+    searching = own["behaviour"] == "wander"
+    assert set(own["left"][searching]) == {4}
+    assert set(own["right"][searching]) == {6}
+    assert own.life.state.memory[0] == searching.sum()
+    assert len(set(usual["left"])) > 3
+
+
+def test_learning_estimator(own):
+    weights = own.life.setting.begin(4, np.zeros(1, np.uint64))[0]["weights"][0]
+    met = np.flatnonzero(own.happened("encounter"))
+    assert own["likelihood_shelter"][met[0]] == 0.625 + weights[1, 0]
+
+
+def test_learning_learner(lived, affording):
+    """The drives of `fixed` never vary, so this one learns by drives that do."""
+    c = lived(
+        agent="LEARNING",
+        drive_function=echo,
+        selector=second,
+        wander=circle,
+        variables={"stamina": {"law": still, "kind": "excess"}},
+        learning={"estimator": sure, "learner": note},
+        encounter_range=150.0,
+        steps=6_000,
+    )
+    trained = int(c.happened("trained").sum())
+    birth = c.life.setting.begin(4, np.zeros(1, np.uint64))[0]["weights"][0]
+    end = c.life.state.weights
+    assert trained > 0
+    assert end[1, 0] == 0.0625
+    assert end[1, 1] == pytest.approx(birth[1, 1] + trained)
+    assert np.array_equal(end[[0, 2]], birth[[0, 2]])
+
+
+def echo(values, changes, set_points, senses, a, b, out):
+    for d in range(len(out)):
+        out[d] = values[d]
