@@ -92,8 +92,8 @@ def cases() -> Iterator[tuple[str, Mind, Khepera]]:
         yield f"{agent}, {physiology}, {model}", mind, Khepera(infrared=model)
     for name, reading in READINGS.items():
         yield name, Mind(agent="LEARNING", **usual, **reading), Khepera()
-    unseeing = Khepera(sensors=(Sensor(x=0.0, y=0.0, direction=180.0),) * SENSORS)
-    yield "collisions", Mind(**usual, death=False), unseeing
+    ahead = Khepera(sensors=(Sensor(x=24.5, y=0.0, direction=0.0),) * SENSORS)
+    yield "grazing the walls", Mind(**usual, death=False), ahead
     yield "no noise", Mind(**usual), Khepera(motor_noise=False, infrared_noise=False)
 
 

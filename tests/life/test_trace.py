@@ -124,6 +124,8 @@ def test_parts_in_which_nothing_happens_fit_with_the_others(small):
     trace = live(Mind(death=False), small, steps=120_000, record="every:4").trace
     assert trace.num_rows == 30_000
     assert trace["event"].num_chunks > 1
+    nothing_left = live(Mind(death=False), small, steps=100_000, record="every:4").trace
+    assert nothing_left.equals(trace[:25_000])
     quiet = live(Mind(), small, steps=3, record="all").trace
     assert quiet.schema == trace.schema
     assert pa.concat_tables([quiet, trace]).num_rows == 30_003
