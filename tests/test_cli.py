@@ -8,8 +8,9 @@ import signal
 import subprocess
 import sys
 import time
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
 import pyarrow.parquet as pq
 import pytest
@@ -49,12 +50,15 @@ def names(directory: Path) -> list[str]:
     return sorted(path.name for path in directory.iterdir())
 
 
-def start(*arguments: str, cwd: Path) -> subprocess.Popen[str]:
+def start(*arguments: str, cwd: Path, stdout: int | IO[str] = subprocess.PIPE) -> subprocess.Popen:
+    """Start a process whose output waits in a buffer, as it does wherever it is not a terminal."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    environment.pop("PYTHONUNBUFFERED", None)
     return subprocess.Popen(
         [sys.executable, "-m", "animat", *arguments],
         cwd=cwd,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-        stdout=subprocess.PIPE,
+        env=environment,
+        stdout=stdout,
         stderr=subprocess.PIPE,
         text=True,
     )
@@ -310,6 +314,15 @@ def started(directory: Path) -> bool:
     return any(path.name.startswith(".out.partial-") for path in directory.iterdir())
 
 
+@pytest.fixture
+def interruptible():
+    """Let new processes heed SIGINT, though these tests may run where it is ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGKILL])
 def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name(
     sent, tmp_path, animat_says, monkeypatch
@@ -349,18 +362,16 @@ def test_a_reader_that_stops_reading_is_no_error_to_talk_of(tmp_path):
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device here")
 def test_a_full_disk_behind_the_output_is_an_error(tmp_path):
     with Path("/dev/full").open("w") as full:
-        run = subprocess.run(
-            [sys.executable, "-m", "animat", "life", "--steps", "9"],
-            cwd=tmp_path,
-            env={
-                **os.environ,
-                "PYTHONPATH": os.pathsep.join(sys.path),
-                "PYTHONIOENCODING": "ascii",
-            },
-            stdout=full,
-            stderr=subprocess.PIPE,
-            text=True,
-            check=False,
-        )
+        run = start("life", "--steps", "9", cwd=tmp_path, stdout=full)
+        _, err = run.communicate(timeout=60)
     assert run.returncode == 1
-    assert "No space left on device" in run.stderr.splitlines()[-1]
+    assert err.splitlines()[-1].startswith("animat: OSError: [Errno 28] No space left on device")
+
+
+def test_signs_that_the_output_cannot_show_are_no_error(animat_says, monkeypatch, tmp_path):
+    world = World.random({"TS": 1}, name="Süd")
+    world.save(tmp_path / "south.toml")
+    output = BytesIO()
+    monkeypatch.setattr(sys, "stdout", TextIOWrapper(output, encoding="ascii"))
+    assert animat_says("life", "--world", "south.toml", "--steps", "9").code == 0
+    assert output.getvalue().startswith(b"BLIND in S?d, physiology excess")

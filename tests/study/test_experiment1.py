@@ -1,6 +1,6 @@
 """Experiment 1, held against single lives of the same robots."""
 
-from threading import active_count
+from threading import Event, active_count
 
 import numpy as np
 import pytest
@@ -114,25 +114,32 @@ def test_only_the_agent_of_the_mind_is_changed():
 
 
 def test_an_interruption_ends_all_threads(monkeypatch):
+    """The first chunk is interrupted; the second, of a single robot, does not live on for long."""
+    monkeypatch.setattr(experiment1.os, "cpu_count", lambda: 2)
     before = active_count()
-    looks = []
+    second_lives = Event()
+    lived_on = []
 
     def interrupted(steps):
-        looks.append(steps)
-        raise KeyboardInterrupt
+        if steps == CHUNK * LOOK_EVERY:
+            assert second_lives.wait(60)
+            raise KeyboardInterrupt
+        second_lives.set()
+        lived_on.append(steps)
 
+    robots, steps = CHUNK + 1, 4_000_000
     with pytest.raises(KeyboardInterrupt):
         learn(
             Mind(),
             World.abundant(),
             Khepera(),
-            robots=40 * CHUNK,
-            steps=1_000_000,
+            robots=robots,
+            steps=steps,
             seed=0,
             progress=interrupted,
         )
     assert active_count() == before
-    assert len(looks) < 40
+    assert 0 < sum(lived_on) < steps / 2
 
 
 def test_the_threshold_of_episodes_is_no_more_than_a_curve_shows(monkeypatch):
