@@ -25,7 +25,7 @@ reproduce: .venv/.installed
 	if [ "$$ours" ] && [ -d $$out ]; then touch $$out/.made-by-make; fi
 
 test: .venv/.installed-for-tests
-	@MPLBACKEND=Agg .venv/bin/python -m pytest $(ARGS)
+	@MPLBACKEND=Agg .venv/bin/python -m pytest --numprocesses auto --dist worksteal $(ARGS)
 
 lint: .venv/.installed-for-tests
 	@.venv/bin/ruff check

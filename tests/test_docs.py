@@ -19,7 +19,7 @@ from animat.mind.mind import Behaviour, Drive, Learning, Mind, VariableChange
 from animat.mind.physiology import PHYSIOLOGIES, Variable
 from animat.robot.khepera import Khepera
 from animat.settings import Settings, SettingsError, read_toml
-from animat.study.settings import StudySettings, WorldChoice
+from animat.study.settings import LifeSettings, WorldChoice
 from animat.world.world import World
 
 ROOT = Path(__file__).parents[1]
@@ -69,10 +69,10 @@ def test_every_file_shown_is_accepted(here, block):
     if WORLD_FILE in block.text:
         assert World.load(file).n_objects > 0
         return
-    settings = read_toml(file, StudySettings)
+    settings = read_toml(file, LifeSettings)
     bring_together(settings.mind, settings.world.world(), settings.robot)
     if block.before.endswith(WRITTEN_OUT):
-        assert settings == StudySettings()
+        assert settings == LifeSettings()
         assert settings.mind.model_fields_set | settings.robot.model_fields_set
 
 
@@ -216,7 +216,7 @@ def test_a_file_of_the_examples_is_accepted(here):
     examples = sorted((ROOT / "docs" / "examples").glob("*.toml"))
     assert examples
     for file in examples:
-        assert read_toml(file, StudySettings).mind.functions()
+        assert read_toml(file, LifeSettings).mind.functions()
 
 
 def test_toml_of_numbers_is_what_it_says():

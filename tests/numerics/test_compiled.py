@@ -1,6 +1,7 @@
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -9,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import animat
-from animat.numerics.compiled import compiled, kernel
+from animat.numerics.compiled import COMPILING_LAYERS, compiled, kernel
 
 HELPER = """
 from animat.numerics.compiled import compiled
@@ -22,7 +23,7 @@ def doubled(x):
 """
 
 ENGINE = """
-from animat.helper import SHIFT, doubled
+from animat.life.helper import SHIFT, doubled
 from animat.numerics.compiled import compiled, kernel
 
 @compiled
@@ -93,7 +94,7 @@ class Compilations(event.Listener):
 
 with event.install_listener("numba:compile", Compilations()):
     import mine
-    from animat.engine import run
+    from animat.life.engine import run
     own = eval(sys.argv[1], {**vars(mine), "loaded": loaded})
     print(json.dumps({"result": run(float(sys.argv[2]), own), "compiled": names}))
 """
@@ -102,7 +103,7 @@ with event.install_listener("numba:compile", Compilations()):
 TELLING = """
 import json
 import mine, numpy
-from animat.engine import run
+from animat.life.engine import run
 from animat.numerics.compiled import announcing
 
 done, told = [], []
@@ -127,9 +128,11 @@ class Laboratory:
         shutil.copytree(
             numerics, self.package / "numerics", ignore=shutil.ignore_patterns("__pycache__")
         )
-        (self.package / "__init__.py").write_text("")
-        (self.package / "helper.py").write_text(HELPER)
-        (self.package / "engine.py").write_text(ENGINE)
+        (self.package / "life").mkdir()
+        for package in (self.package, self.package / "life"):
+            (package / "__init__.py").write_text("")
+        (self.package / "life" / "helper.py").write_text(HELPER)
+        (self.package / "life" / "engine.py").write_text(ENGINE)
         (folder / "mine.py").write_text(OWN)
         (folder / "theirs.py").write_text(THEIRS)
 
@@ -168,9 +171,9 @@ def laboratory(tmp_path):
 
 EDITS = [
     # file, what stands there, what comes instead, the kernel's result from then on
-    ("animat/helper.py", "2.0 * x", "3.0 * x", 111),
-    ("animat/helper.py", "SHIFT = 100.0", "SHIFT = 200.0", 211),
-    ("animat/engine.py", "law(x) + own(x)", "law(x) - own(x)", 195),
+    ("animat/life/helper.py", "2.0 * x", "3.0 * x", 111),
+    ("animat/life/helper.py", "SHIFT = 100.0", "SHIFT = 200.0", 211),
+    ("animat/life/engine.py", "law(x) + own(x)", "law(x) - own(x)", 195),
     ("mine.py", "+ 1.0", "+ 5.0", 191),
     ("theirs.py", "7.0 * x", "8.0 * x", 190),
 ]
@@ -187,6 +190,16 @@ def test_only_a_changed_source_is_compiled_in_a_second_process(laboratory):
         assert result == expected, (file, new)
         assert "run" in names
     assert laboratory.run() == (190, [])
+
+
+def test_every_layer_that_compiles_is_stamped():
+    root = Path(animat.__file__).parent
+    compiling = {
+        path.relative_to(root).parts[0]
+        for path in root.rglob("*.py")
+        if re.search(r"^@(compiled|kernel)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+    assert compiling == set(COMPILING_LAYERS)
 
 
 def test_what_a_user_s_file_imports_is_not_overlooked(laboratory):

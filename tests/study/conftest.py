@@ -9,7 +9,7 @@ import pytest
 
 from animat.study.publication import publish
 from animat.study.reproduction import Reproduction, Size, reproduce
-from animat.study.settings import StudySettings
+from animat.study.settings import LifeSettings
 
 Told = list[tuple[str, int, int]]
 
@@ -31,7 +31,7 @@ def published(tmp_path_factory: pytest.TempPathFactory) -> Published:
         told.append((task, done, total))
 
     size = Size(robots=4, lives=24, steps=3_000)
-    result = reproduce(StudySettings(), seed=1, size=size, tell=tell)
+    result = reproduce(LifeSettings(), seed=1, size=size, tell=tell)
     publish(result, directory, lambda: tell("Pages", 1, 8))
     return Published(result, directory, told)
 

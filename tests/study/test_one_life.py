@@ -12,7 +12,7 @@ from animat.mind.mind import Mind
 from animat.settings import SettingsError
 from animat.study import one_life
 from animat.study.one_life import FIGURE_ROWS, OneLife, live_one, story
-from animat.study.settings import StudySettings
+from animat.study.settings import LifeSettings
 from animat.world.world import World
 
 
@@ -21,7 +21,7 @@ def silent(task, done, total):
 
 
 def asked(mind=None, seed=2, index=1, steps=300_000, trace=None, figure=None, force=False):
-    settings = StudySettings(mind=mind or Mind())
+    settings = LifeSettings(mind=mind or Mind())
     return OneLife(settings, seed, index, steps, trace, figure, force)
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from animat.settings import read_toml
 from animat.study.publication import FIGURES, publish
-from animat.study.settings import StudySettings
+from animat.study.settings import LifeSettings
 from animat.world.world import World
 
 TABLES = ["lives", "likelihoods", "learning_curve", "last_steps"]
@@ -41,7 +41,7 @@ def test_the_claims_are_read_back_as_they_were(published):
 
 def test_settings_and_worlds_make_the_same_again(published):
     directory, result = published.directory, published.result
-    assert read_toml(directory / "settings.toml", StudySettings) == result.settings
+    assert read_toml(directory / "settings.toml", LifeSettings) == result.settings
     for world in result.worlds:
         assert World.load(directory / f"world_{world.name}.toml") == world
     made = json.loads((directory / "how_made.json").read_text("utf-8"))

@@ -11,7 +11,7 @@ from animat.robot.khepera import Khepera
 from animat.study.experiment1 import learn
 from animat.study.experiment2 import compare
 from animat.study.reproduction import PAPERS_LIVES, QUICK, Size, check, reproduce
-from animat.study.settings import StudySettings, WorldChoice
+from animat.study.settings import LifeSettings, WorldChoice
 from animat.world.world import World
 
 CELLS = [("abundant", "BLIND"), ("abundant", "AF"), ("scarce", "BLIND"), ("scarce", "AF")]
@@ -84,7 +84,7 @@ def test_it_is_the_two_experiments_and_nothing_else(reproduced):
 def test_settings_are_those_of_every_life():
     mind = Mind(consumed=True, death=False)
     robot = Khepera(motor_noise=False, infrared_noise=False, position_noise=0.0, turn_noise=0.0)
-    settings = StudySettings(mind=mind, robot=robot)
+    settings = LifeSettings(mind=mind, robot=robot)
     result = reproduce(settings, seed=3, size=Size(robots=1, lives=2, steps=600), tell=silent)
     assert all(world.n_sites > world.n_objects for world in result.worlds)
     assert set(result.lives["lifespan"].to_pylist()) == {600}
@@ -118,7 +118,7 @@ ONE_DRIVE = Mind(
 )
 def test_what_would_be_left_out_or_is_too_little_is_refused_at_once(changes, size, lines):
     with pytest.raises(LifeError) as refused:
-        reproduce(StudySettings(**changes), seed=0, size=size, tell=silent)
+        reproduce(LifeSettings(**changes), seed=0, size=size, tell=silent)
     assert len(refused.value.problems) == len(lines)
     for problem, line in zip(refused.value.problems, lines, strict=True):
         assert line in problem
@@ -126,8 +126,8 @@ def test_what_would_be_left_out_or_is_too_little_is_refused_at_once(changes, siz
 
 def test_an_impossible_seed_is_refused():
     with pytest.raises(LifeError, match="seed = -1"):
-        check(StudySettings(), -1, QUICK)
+        check(LifeSettings(), -1, QUICK)
 
 
 def test_what_a_reproduction_needs_is_enough():
-    check(StudySettings(), 2**64 - 1, Size(robots=1, lives=2, steps=1))
+    check(LifeSettings(), 2**64 - 1, Size(robots=1, lives=2, steps=1))

@@ -4,7 +4,7 @@ import pytest
 from pydantic import ValidationError
 
 from animat.settings import SettingsError, read_toml
-from animat.study.settings import StudySettings, WorldChoice, named
+from animat.study.settings import LifeSettings, WorldChoice, named
 from animat.world.world import World
 
 
@@ -65,7 +65,7 @@ def test_a_file_gives_world_robot_and_mind(tmp_path):
         '[world]\nlayout = "random"\ncounts = { TS = 1 }\n'
         '[robot]\ninfrared = "linear"\n[mind]\nagent = "RANDOM"\n'
     )
-    settings = read_toml(path, StudySettings)
+    settings = read_toml(path, LifeSettings)
     assert settings.world.counts == {"TS": 1}
     assert settings.robot.infrared == "linear"
     assert settings.mind.agent == "RANDOM"
@@ -78,7 +78,7 @@ def test_every_mistake_of_a_file_is_told(tmp_path):
         "[mind]\nphysiology = 'exces'\n[mnd]\n"
     )
     with pytest.raises(SettingsError) as refused:
-        read_toml(path, StudySettings)
+        read_toml(path, LifeSettings)
     found = "\n".join(refused.value.problems)
     for line in (
         "world.counts.TS = -1: must be",

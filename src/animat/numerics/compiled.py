@@ -6,8 +6,8 @@ functions that Python calls: they hold the loop over steps, and their machine co
 The cache must never serve stale code, and must serve a mind whose functions are the user's own.
 Numba looks only at the file of the cached function and at the identity of the functions handed to
 it, and that identity is random in every process. So every function compiled here gets an identity
-made of its name and its source, and a cached kernel is stamped with the source of the whole
-package.
+made of its name and its source, and a cached kernel is stamped with the source of every layer that
+compiles anything.
 
 Bits: no fast maths and no contraction to fused multiply-add, so that a result does not depend on
 the processor; NumPy's error model, so that no step can raise. No run-time for memory, so that
@@ -38,6 +38,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 PLAIN = (bool, int, float, str, type(None))
 
+COMPILING_LAYERS = ("numerics", "world", "robot", "mind", "life")
+"""The packages that hold compiled functions; a change of another one compiles nothing anew."""
+
 OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False, "_nrt": False}
 
 # A function of a user's file belongs to no module that can be imported, so Numba counts it to a
@@ -55,7 +58,7 @@ def kernel(function: Function) -> Function:
     dispatcher: Any = numba.njit(cache=True, **OPTIONS)(function)
     if dispatcher is not function:
         kept = dispatcher._cache._cache_file
-        kept._source_stamp = package_stamp()
+        kept._source_stamp = engine_stamp()
         kept._load_index = _or_nothing(kept._load_index)
     return _identified(dispatcher, function)
 
@@ -77,12 +80,13 @@ def _or_nothing(load_index: Callable[[], dict[Any, Any]]) -> Callable[[], dict[A
 
 
 @cache
-def package_stamp() -> str:
-    """Return the SHA-256 of every source file of the package, in hexadecimal."""
+def engine_stamp() -> str:
+    """Return the SHA-256 of every source file of the layers that compile, in hexadecimal."""
     root = Path(__file__).parents[1]
     digest = hashlib.sha256()
-    for path in sorted(root.rglob("*.py")):
-        digest.update(str(path.relative_to(root)).encode() + b"\0" + path.read_bytes() + b"\0")
+    for layer in COMPILING_LAYERS:
+        for path in sorted((root / layer).rglob("*.py")):
+            digest.update(str(path.relative_to(root)).encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()
 
 

@@ -20,7 +20,7 @@ from animat.life.trace import table
 from animat.mind.mind import Mind
 from animat.progress import Telling
 from animat.settings import SettingsError
-from animat.study.settings import StudySettings
+from animat.study.settings import LifeSettings
 from animat.world.world import World
 
 LEARNING_STEPS = 300_000
@@ -35,7 +35,7 @@ DRAWINGS = (".svg", ".png", ".pdf")
 class OneLife(NamedTuple):
     """Which life to live, and what to write of it."""
 
-    settings: StudySettings
+    settings: LifeSettings
     seed: int
     index: int
     steps: int

@@ -14,7 +14,7 @@ from animat.report.lives import cell, cells, first_lives
 from animat.report.survival import CellSummary, LogRank, logrank, summarise
 from animat.study.experiment1 import Learnt, learn
 from animat.study.experiment2 import compare
-from animat.study.settings import StudySettings, WorldChoice
+from animat.study.settings import LifeSettings, WorldChoice
 from animat.world.world import World
 
 PAPERS_LIVES = 20
@@ -44,7 +44,7 @@ class Reproduction(NamedTuple):
     and AF in each world.
     """
 
-    settings: StudySettings
+    settings: LifeSettings
     seed: int
     size: Size
     worlds: tuple[World, World]
@@ -56,7 +56,7 @@ class Reproduction(NamedTuple):
     tests: dict[str, LogRank]
 
 
-def check(settings: StudySettings, seed: int, size: Size) -> None:
+def check(settings: LifeSettings, seed: int, size: Size) -> None:
     """Refuse what would be left out of account, and what is too little. Raises LifeError."""
     problems = []
     if settings.world != WorldChoice():
@@ -83,7 +83,7 @@ def check(settings: StudySettings, seed: int, size: Size) -> None:
     check_life(seed, 0, size.steps)
 
 
-def reproduce(settings: StudySettings, *, seed: int, size: Size, tell: Telling) -> Reproduction:
+def reproduce(settings: LifeSettings, *, seed: int, size: Size, tell: Telling) -> Reproduction:
     """Run both experiments and judge the claims. Raises LifeError for what cannot be lived."""
     check(settings, seed, size)
     worlds = (World.abundant(), World.scarce())

@@ -69,7 +69,7 @@ def named(name: str) -> World:
     )
 
 
-class StudySettings(Settings):
+class LifeSettings(Settings):
     """A settings file: [world], [robot] and [mind]."""
 
     world: WorldChoice = WorldChoice()

@@ -1,0 +1,76 @@
+"""The command itself: how it is called, how it ends, and what it says of what went wrong."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from io import TextIOWrapper
+from typing import NoReturn
+
+import typer
+
+from animat.cli.options import Debug
+
+app = typer.Typer(
+    name="animat",
+    help="A laboratory for motivated robots: reproduce the paper of 2003, live a life.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,  # to load rich would take most of the time of --help
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+DONE, FAILED, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
+
+
+@app.callback()
+def _animat(debug: Debug = False) -> None:
+    """Read the options that go before every command."""
+
+
+def main() -> None:
+    """Run the command line and exit with its code."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
+    try:
+        code = app(standalone_mode=False)
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        code = INTERRUPTED
+    except Exception as error:
+        _explain(error)
+    if code == INTERRUPTED:
+        _leave("interrupted; nothing is half-written", INTERRUPTED)
+    sys.exit(code if isinstance(code, int) else DONE)
+
+
+def _explain(error: Exception) -> NoReturn:
+    """Say what went wrong in a line for each mistake, and exit."""
+    from animat.settings import SettingsError
+
+    if "--debug" in sys.argv:
+        traceback.print_exception(error)
+    if isinstance(error, BrokenPipeError):
+        _leave("", FAILED)
+    if usage := getattr(error, "format_message", None):
+        _leave(usage(), WRONG_INPUT)
+    if isinstance(error, SettingsError):
+        _leave(str(error), WRONG_INPUT)
+    what = str(error)
+    if isinstance(error, OSError) and error.filename:
+        what = f"{error.filename}: {error.strerror}"
+    what = " ".join(what.split())
+    _leave(f"{type(error).__name__}: {what} (--debug shows where)", FAILED)
+
+
+def _leave(text: str, code: int) -> NoReturn:
+    for line in text.splitlines():
+        print(f"animat: {line}", file=sys.stderr)
+    try:
+        sys.stdout.flush()
+    except OSError:
+        # Python would try once more at its end, and complain.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.exit(code)
