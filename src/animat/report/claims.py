@@ -12,6 +12,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 import pyarrow as pa
+from numpy.typing import NDArray
 
 from animat.report.estimates import (
     LEVEL,
@@ -102,6 +103,16 @@ def learning_verdict(distances: Iterable[Estimate]) -> Verdict:
     return _worst(_within(distance, FARTHEST) for distance in distances)
 
 
+def distance_from_table_1(likelihoods: pa.Table) -> NDArray[np.float64]:
+    """How far each row's `likelihood` is from what its `network` should say of its `object`.
+
+    From Table 1's `afforded` of 0.5 on it should say 1; the network of `INTERACT` always.
+    """
+    afforded = column(likelihoods, "afforded") >= 0.5
+    truth = (afforded | (column(likelihoods, "network") == INTERACT)).astype(np.float64)
+    return np.abs(column(likelihoods, "likelihood").astype(np.float64) - truth)
+
+
 def judge_lifespans(
     lives: pa.Table,
     *,
@@ -175,7 +186,6 @@ def judge_learning(likelihoods: pa.Table, *, seed: int = 0, resamples: int = RES
     network = column(likelihoods, "network")
     kind = column(likelihoods, "object")
     likelihood = column(likelihoods, "likelihood").astype(np.float64)
-    truth = ((column(likelihoods, "afforded") >= 0.5) | (network == INTERACT)).astype(np.float64)
     pairs = list(dict.fromkeys(zip(network.tolist(), kind.tolist(), strict=True)))
     each, rows = np.unique(seeds, return_counts=True)
     if not each.size:
@@ -183,7 +193,7 @@ def judge_learning(likelihoods: pa.Table, *, seed: int = 0, resamples: int = RES
     triples = set(zip(seeds.tolist(), network.tolist(), kind.tolist(), strict=True))
     if np.any(rows != len(pairs)) or len(triples) != len(seeds):
         raise ValueError("every seed needs one likelihood for each network and object type")
-    away = np.abs(likelihood - truth)
+    away = distance_from_table_1(likelihoods)
     parts, distances = [], []
     for name, thing in pairs:
         chosen = (network == name) & (kind == thing)

@@ -1,7 +1,9 @@
 """Bootstrap intervals of many universes at once.
 
 `estimates.bootstrapped` takes one sample at a time. Here a sample is a row, and scipy's bootstrap
-goes over all rows with the same resamples: to the bit what it gives for each row alone.
+goes over all rows with the same resamples: what it gives for each row alone. As everything told of
+universes is made of means, a resample is taken as how often it holds each life, and the means of
+all rows are a product of two matrices.
 """
 
 from __future__ import annotations
@@ -17,7 +19,9 @@ from scipy import stats
 from animat.report.estimates import BCA_LIMIT, LEVEL, RESAMPLES, Estimate
 
 NUMBERS = 4_000_000
-"""How many numbers are held at once: rows times resamples times values."""
+"""How many numbers are held at once: rows times resamples."""
+
+OfMeans = Callable[..., NDArray[np.float64]]
 
 
 class Estimates(NamedTuple):
@@ -34,57 +38,63 @@ class Estimates(NamedTuple):
 
 def bootstrapped_rows(
     samples: Sequence[NDArray[np.float64]],
-    statistic: Callable[..., NDArray[np.float64]],
+    of_means: OfMeans,
     *,
     seed: int = 0,
     resamples: int = RESAMPLES,
 ) -> Estimates:
-    """`statistic(*samples, axis)` of every row, as `estimates.bootstrapped` has it for paired ones.
+    """`of_means(*means)` of every row, with the interval of `estimates.bootstrapped` for pairs.
 
     `samples` are arrays [R, n]; entry k of each belongs together and is resampled together.
-    Raises ValueError if n is 0.
+    `of_means` takes the mean of each, arrays of any shape, and returns one of that shape. Raises
+    ValueError if n is 0.
     """
     rows, values = samples[0].shape
     if values == 0:
         raise ValueError("an estimate needs at least one value in every sample")
-    value = statistic(*samples, axis=-1)
+    value = of_means(*(sample.mean(axis=1) for sample in samples))
     low, high = value.copy(), value.copy()
     varies = np.any([np.ptp(sample, axis=1) > 0.0 for sample in samples], axis=0)
     method = "BCa" if values <= BCA_LIMIT else "percentile"
-    at_once = max(1, NUMBERS // values**2)
+    at_once = max(1, NUMBERS // resamples)
     for first in range(0, rows, at_once):
         chosen = first + np.flatnonzero(varies[first : first + at_once])
-        if not chosen.size:
-            continue
-        parts = [sample[chosen] for sample in samples]
-        low[chosen], high[chosen] = _interval(parts, statistic, seed, resamples, method)
+        if chosen.size:
+            parts = [sample[chosen] for sample in samples]
+            low[chosen], high[chosen] = _interval(parts, of_means, seed, resamples, method)
     # BCa has no answer when every resample lies on one side of the value.
-    open_ = np.flatnonzero(varies & ~(np.isfinite(low) & np.isfinite(high)))
-    if open_.size:
-        parts = [sample[open_] for sample in samples]
-        low[open_], high[open_] = _interval(parts, statistic, seed, resamples, "percentile")
+    unknown = np.flatnonzero(varies & ~(np.isfinite(low) & np.isfinite(high)))
+    if unknown.size:
+        parts = [sample[unknown] for sample in samples]
+        low[unknown], high[unknown] = _interval(parts, of_means, seed, resamples, "percentile")
     return Estimates(value, low, high)
 
 
 def _interval(
     samples: Sequence[NDArray[np.float64]],
-    statistic: Callable[..., NDArray[np.float64]],
+    of_means: OfMeans,
     seed: int,
     resamples: int,
     method: str,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     rows, values = samples[0].shape
+
+    def statistic(entries: NDArray, axis: int = -1) -> NDArray[np.float64]:
+        """For resamples given as numbers of entries, [..., n], the statistic [R, ...]."""
+        drawn = entries.reshape(-1, entries.shape[-1]).astype(np.int64)
+        places = drawn + values * np.arange(len(drawn))[:, None]
+        times = np.bincount(places.ravel(), minlength=values * len(drawn)).reshape(-1, values)
+        means = (sample @ times.T / drawn.shape[1] for sample in samples)
+        return of_means(*means).reshape(rows, *entries.shape[:-1])
+
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", stats.DegenerateDataWarning)
         warnings.simplefilter("ignore", RuntimeWarning)
         result = stats.bootstrap(
-            tuple(samples),
+            (np.arange(values),),
             statistic,
-            paired=True,
             vectorized=True,
-            axis=-1,
             n_resamples=resamples,
-            batch=max(1, NUMBERS // (rows * values)),
             confidence_level=LEVEL,
             method=method,
             rng=np.random.default_rng(seed),
