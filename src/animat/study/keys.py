@@ -83,7 +83,7 @@ def table_of(annotation: Any) -> Any:
 def _known(table: Any, node: dict[str, Any], key: Key, depth: int) -> list[str]:
     """Return what part `depth` of a key may be, where `table` is what it stands in."""
     if is_model(table):
-        return _fields(table)
+        return fields(table)
     if not _holds_tables(table):
         return [key[depth]]
     entries = _entries(node, key[:depth])
@@ -92,7 +92,7 @@ def _known(table: Any, node: dict[str, Any], key: Key, depth: int) -> list[str]:
     return [*entries, key[depth]] if may_be_new else entries
 
 
-def _fields(model: type[BaseModel]) -> list[str]:
+def fields(model: type[BaseModel]) -> list[str]:
     """Return the settings of a model that can be written down."""
     return [name for name, field in model.model_fields.items() if not field.exclude]
 
@@ -126,7 +126,7 @@ def _keys(annotation: Any, node: Any, key: Key) -> Iterator[Key]:
     if table is None:
         yield key
     elif is_model(table):
-        for name in _fields(table):
+        for name in fields(table):
             below = node.get(name, _default(table, name))
             yield from _keys(table.model_fields[name].annotation, below, (*key, name))
     elif _holds_tables(table):

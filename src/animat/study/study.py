@@ -23,6 +23,7 @@ from animat.study.factors import each_once
 from animat.study.keys import Key, UnknownKeyError, put, read_key
 from animat.study.refusals import design_mistakes, given_values
 from animat.study.settings import CaseSettings, Teacher
+from animat.study.shipped import LONGEST_NAME, is_name
 from animat.study.telling import told
 
 __all__ = ["Record", "Study", "Teacher", "read_study"]
@@ -30,11 +31,9 @@ __all__ = ["Record", "Study", "Teacher", "read_study"]
 MOST_LIVES = 10**9
 """Lives a case may have; so the index of every life is a whole number of 63 bits."""
 
-LONGEST_NAME = 80
-
 
 def _named_like_a_directory(name: str) -> str:
-    if not re.fullmatch(r"\w([\w .-]*\w)?", name) or len(name) > LONGEST_NAME:
+    if not is_name(name):
         raise ValueError(
             f"must be up to {LONGEST_NAME} letters, digits, blanks and . _ -, the first and the"
             " last a letter or digit: results go to a directory of this name"
