@@ -15,7 +15,15 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from animat.mistakes import mistakes, nearest
 
-__all__ = ["Settings", "SettingsError", "explain", "nearest", "read_toml"]
+__all__ = [
+    "Settings",
+    "SettingsError",
+    "explain",
+    "nearest",
+    "parse_toml",
+    "read_toml",
+    "validated",
+]
 
 LARGEST_FILE = 1_000_000
 """Bytes; a settings file is written by hand, so a larger one is some other file."""
@@ -59,16 +67,30 @@ def read_toml(path: Path | str, model: type[Model], largest: int = LARGEST_FILE)
     Raises:
         SettingsError: the file cannot be read, is empty, is no TOML, or has mistakes.
     """
+    try:
+        return validated(parse_toml(path, largest), model)
+    except ValidationError as error:
+        raise explain(error, model, str(path)) from None
+
+
+def parse_toml(path: Path | str, largest: int = LARGEST_FILE) -> dict[str, Any]:
+    """Return what a TOML file of at most `largest` bytes says, of whatever it is.
+
+    Raises:
+        SettingsError: the file cannot be read, is empty or is no TOML.
+    """
     data = _parsed(_text(Path(path), largest), path)
     if not data:
         raise SettingsError(f"{path}: is empty: it sets nothing")
     if _is_deeper_than(data, DEEPEST):
         raise SettingsError(f"{path}: is nested too deeply: more than {DEEPEST} levels")
-    try:
-        # By way of JSON because there a list may become a tuple and a string a path, even strictly.
-        return model.model_validate_json(json.dumps(data, default=str))
-    except ValidationError as error:
-        raise explain(error, model, str(path)) from None
+    return data
+
+
+def validated(data: dict[str, Any], model: type[Model]) -> Model:
+    """Return what TOML says as settings of `model`. Raises pydantic's ValidationError."""
+    # By way of JSON because there a list may become a tuple and a string a path, even strictly.
+    return model.model_validate_json(json.dumps(data, default=str))
 
 
 def _text(path: Path, largest: int) -> str:

@@ -6,6 +6,7 @@ mistake told at once.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -21,9 +22,13 @@ PUBLISHED = ("abundant", "scarce")
 
 
 class WorldChoice(Settings):
-    """Which world: `abundant`, `scarce`, `random` (by counts, seed and gap), or a world's file."""
+    """Which world: `abundant`, `scarce`, `random` (by counts, seed and gap), or a world's file.
+
+    The tables call it by `name`, or where that is left out by the name it has of itself.
+    """
 
     layout: str = "abundant"
+    name: Annotated[str, Field(min_length=1)] | None = None
     counts: dict[str, Annotated[int, Field(ge=0)]] | None = None
     seed: Annotated[int, Field(ge=0)] = 0
     gap: Annotated[float, Field(ge=0.0)] = MINIMUM_GAP
@@ -38,6 +43,10 @@ class WorldChoice(Settings):
 
     def world(self) -> World:
         """Return the world. Raises SettingsError for one that is unknown or impossible."""
+        world = self._laid_out()
+        return world if self.name is None else replace(world, name=self.name)
+
+    def _laid_out(self) -> World:
         if self.layout == "random":
             assert self.counts is not None
             return World.random(
