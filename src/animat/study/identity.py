@@ -11,58 +11,78 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from animat.life.engine import ENGINE
-from animat.life.setting import LifeError, Setting
+from animat.life.setting import LifeError, checked_parameters
 from animat.mind.agents import ACCEPT_ALL, ASK_NETWORKS, ASK_TRUTH
-from animat.mind.functions import BUILT_IN
+from animat.mind.functions import BUILT_IN, Functions
+from animat.mind.mind import Mind
 from animat.mind.selection import RANDOM, WINNER_TAKE_ALL
 from animat.numerics.compiled import identity as identity_of_function
+from animat.robot.khepera import Khepera
 from animat.world.files import world_content
+from animat.world.world import World
 
-LEARNING = ("learning_rate", "learning_cycles", "learning_threshold", "learner")
-"""What is read only of a mind that learns."""
+LEARNING = ("learning_rate", "learning_cycles", "learning_threshold", "learner", "biases")
+"""What is read only of a mind that learns; `biases` also at the birth of networks."""
 
 ASKING = ("estimator", "feature_noise")
 """What is read only for what networks say or learn."""
 
 
-def identity(
-    setting: Setting, seed: int, steps: int, *, taught: str = "", traced: bool = False
-) -> str:
-    """Return the identity of the lives of a setting and seed, up to `steps` steps each.
+class Lived(NamedTuple):
+    """What lives are lived in and from: mind, world, robot, the user's functions, seed, cap.
 
-    `taught` is the identity of the networks they are given, if any. In a trace (`traced`) stands
-    also what decides nothing. Raises LifeError for a function that has no identity.
+    `taught` is the identity of the networks they are given, if any.
+    """
+
+    mind: Mind
+    world: World
+    robot: Khepera
+    functions: Functions
+    seed: int
+    steps: int
+    taught: str = ""
+
+
+def identity(lived: Lived, *, traced: bool = False) -> str:
+    """Return the identity of lives. In a trace (`traced`) stands also what decides nothing.
+
+    Raises LifeError for what does not fit together, and for a function that has no identity.
     """
     digest = hashlib.sha256()
-    for part in _parts(setting, seed, steps, taught, traced):
+    for part in _parts(lived, traced):
         digest.update(str(len(part)).encode() + b":" + part)
     return digest.hexdigest()[:32]
 
 
-def _parts(setting: Setting, seed: int, steps: int, taught: str, traced: bool) -> Iterator[bytes]:
-    mind, record = setting.mind, setting.mind_parameters
+def networks_matter(record: np.record) -> bool:
+    """Tell whether networks decide anything in the lives of a mind, or are what comes of them."""
+    if record.learns or record.judge == ASK_NETWORKS:
+        return True
+    chooses_by_drives = record.selector in {WINNER_TAKE_ALL, RANDOM}
+    return record.judge != ASK_TRUTH and not chooses_by_drives
+
+
+def _parts(lived: Lived, traced: bool) -> Iterator[bytes]:
+    mind, world = lived.mind, lived.world
+    record = checked_parameters(mind, world)
     learns = bool(record.learns)
-    networks = traced or learns or asks_networks(setting)
-    unread: set[str] = set()
-    if not traced:
-        unread |= set() if learns else set(LEARNING)
-        unread |= set() if networks else set(ASKING)
-        unread |= set() if record.judge != ACCEPT_ALL else {"likelihood_threshold"}
-    if not learns:
-        unread.add("biases")  # else than for training they are read only at birth, see below
-    yield json.dumps([ENGINE, seed, steps]).encode()
+    networks = traced or networks_matter(record)
+    unread: set[str] = set() if learns else set(LEARNING)
+    unread |= set() if networks else set(ASKING)
+    unread |= {"likelihood_threshold"} if record.judge == ACCEPT_ALL else set()
+    yield json.dumps([ENGINE, lived.seed, lived.steps]).encode()
     yield from _fields(record, unread)
-    yield from _fields(setting.robot_parameters, set())
-    world = setting.world
+    yield from _fields(lived.robot.parameters(), set())
     yield json.dumps(world_content(world.name, world.layout, world.resolution)).encode()
     names = [mind.agent, *mind.resolved_variables(), *mind.drives, *mind.behaviours]
     yield json.dumps(names).encode()
     for role, built_in in BUILT_IN._asdict().items():
-        own = getattr(setting.functions, role)
+        own = getattr(lived.functions, role)
         if own is not built_in and role not in unread:
             plain = getattr(own, "py_func", own)
             known = identity_of_function(plain)
@@ -74,16 +94,7 @@ def _parts(setting: Setting, seed: int, steps: int, taught: str, traced: bool) -
             yield f"{role} {known}".encode()
     if networks:
         untaught = [bool(mind.learning.biases), mind.learning.hidden_units]
-        yield taught.encode() if taught else json.dumps(untaught).encode()
-
-
-def asks_networks(setting: Setting) -> bool:
-    """Tell whether what the networks say decides anything in the lives of a setting."""
-    record = setting.mind_parameters
-    if record.judge == ASK_TRUTH:
-        return False
-    chooses_by_drives = record.selector in {WINNER_TAKE_ALL, RANDOM}
-    return bool(record.judge == ASK_NETWORKS or not chooses_by_drives)
+        yield lived.taught.encode() if lived.taught else json.dumps(untaught).encode()
 
 
 def _fields(record: np.record, unread: set[str]) -> Iterator[bytes]:
