@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from animat.report.estimates import LEVEL, Estimate, share
-from animat.report.multiverse.readings import Readings, codes
+from animat.report.multiverse.readings import MOST_UNIVERSES, Readings, codes, some_of
 from animat.report.multiverse.universes import CLAIMS, holds
 
 FOLDS = 10
@@ -64,6 +64,7 @@ def foretell(universes: pa.Table, readings: Readings) -> list[Foretold]:
     from sklearn.preprocessing import PolynomialFeatures
     from sklearn.tree import DecisionTreeClassifier
 
+    universes = some_of(universes, MOST_UNIVERSES)
     had, names = _had(codes(universes, readings), readings)
     fewest = max(FOLDS, len(had) // 100)
     tree = DecisionTreeClassifier(max_leaf_nodes=LEAVES, min_samples_leaf=fewest, random_state=0)

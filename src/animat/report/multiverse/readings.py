@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import combinations
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
 from animat.report.lives import column
+
+MOST_UNIVERSES = 8_000
+"""What needs all universes in memory many times over looks at so many at most."""
 
 Readings = Mapping[str, Sequence[str]]
 """The values of each reading by its name; the first is the one the others are compared with."""
@@ -46,3 +50,23 @@ def comparable(code: NDArray[np.int64], groups: Sequence[NDArray[np.bool_]]) -> 
         common = set.intersection(*(set(values[group].tolist()) for group in groups))
         kept &= np.isin(values, list(common))
     return kept
+
+
+def fewest_together(code: NDArray[np.int64]) -> int:
+    """In how many universes those two values of two readings meet that meet least, but meet.
+
+    `code` is [U, F]. Values that never meet are those that a rule keeps apart.
+    """
+    fewest = len(code)
+    for one, other in combinations(range(code.shape[1]), 2):
+        _, times = np.unique(code[:, [one, other]], axis=0, return_counts=True)
+        fewest = min(fewest, int(times.min(initial=fewest)))
+    return fewest
+
+
+def some_of(universes: pa.Table, most: int) -> pa.Table:
+    """All universes if they are not more than `most`, else so many drawn at random."""
+    if universes.num_rows <= most:
+        return universes
+    rows = np.random.default_rng(0).choice(universes.num_rows, most, replace=False)
+    return universes.take(pa.array(np.sort(rows)))

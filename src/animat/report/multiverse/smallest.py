@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from animat.report.claims import Verdict, above
 from animat.report.estimates import Estimate, share
 from animat.report.lives import column
-from animat.report.multiverse.readings import Readings, codes
+from animat.report.multiverse.readings import MOST_UNIVERSES, Readings, codes, some_of
 from animat.report.multiverse.universes import holds
 
 NEARLY_ALL = 0.95
@@ -27,9 +27,6 @@ MOST_READINGS = 5
 
 SUPPORT = 40
 """Universes that must be left; if the claim holds in all, Wilson's interval begins at 0.91."""
-
-MOST_UNIVERSES = 8_000
-"""Universes that are searched at most; of more, so many drawn at random."""
 
 BEAM = 5_000
 """Sets of each size that are extended; every pair and triple of usual designs is tried."""
@@ -66,9 +63,7 @@ def smallest_set(universes: pa.Table, readings: Readings, claim: str) -> Smalles
     Of several of one size the one whose share is surest: Wilson's interval begins highest. None
     if no set of `MOST_READINGS` or fewer does it in at least `SUPPORT` universes.
     """
-    if universes.num_rows > MOST_UNIVERSES:
-        rows = np.random.default_rng(0).choice(universes.num_rows, MOST_UNIVERSES, replace=False)
-        universes = universes.take(np.sort(rows))
+    universes = some_of(universes, MOST_UNIVERSES)
     good_in = holds(universes, claim)
     if len(good_in) >= SUPPORT and good_in.mean() >= NEARLY_ALL:
         return SmallestSet(claim, (), len(good_in), share(int(good_in.sum()), len(good_in)))
