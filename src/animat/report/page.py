@@ -25,6 +25,9 @@ PAPER = (
     "Object Affordances: First Experiments Using a Simulated Khepera Robot."
 )
 
+SMALLEST_P = 1e-300
+"""Smaller p values are not told from each other."""
+
 LARGEST_SVG = 400_000
 """A picture whose SVG has more bytes is put into the page as PNG."""
 
@@ -38,11 +41,12 @@ class Badge:
 
 @dataclass(frozen=True)
 class TableBlock:
-    """A table: names of the columns, rows of texts or badges, and what is said below it."""
+    """A table: names of the columns, rows of texts or badges, what is said below and above it."""
 
     columns: Sequence[str]
     rows: Sequence[Sequence[str | Badge]]
     note: str = ""
+    title: str = ""
 
 
 @dataclass(frozen=True)
@@ -64,7 +68,8 @@ class Picture:
 class Section:
     """A part of the page. Its blocks come in the order of the fields; all are optional.
 
-    `terms` are names with their values; `code` is shown as it is typed.
+    `terms` are names with their values; `code` is shown as it is typed; `notices`, warnings that
+    nobody should miss, come before all else.
     """
 
     title: str
@@ -74,6 +79,7 @@ class Section:
     tables: Sequence[TableBlock] = ()
     pictures: Sequence[Picture] = ()
     code: str = ""
+    notices: Sequence[str] = ()
 
 
 def write_page(
@@ -171,6 +177,13 @@ def interval(estimate: Estimate, form: str) -> str:
     value, low, high = (_number(number, form) for number in estimate)
     # Spaces that do not break keep the interval on one line of a narrow column.
     return value if value == "–" else f"{value} ({low}\u00a0to\u00a0{high})"
+
+
+def p_value(p: float) -> str:
+    """A p value as text; a dash for a test that could not be made."""
+    if math.isnan(p):
+        return "–"
+    return f"{p:.2g}" if p > SMALLEST_P else f"< {SMALLEST_P:g}"
 
 
 def _number(number: float, form: str) -> str:
