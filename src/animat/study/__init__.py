@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from animat.study.design import Case, Design, Excluded, cases, excluded
+    from animat.study.results import open as open  # noqa: A004
     from animat.study.settings import CaseSettings, LifeSettings, Teacher, WorldChoice
     from animat.study.shipped import shipped, study_file
     from animat.study.study import Study, read_study
@@ -27,6 +28,7 @@ _HOMES = {
     "Study": "animat.study.study",
     "Teacher": "animat.study.settings",
     "WorldChoice": "animat.study.settings",
+    "open": "animat.study.results",
     "cases": "animat.study.design",
     "excluded": "animat.study.design",
     "read_study": "animat.study.study",
@@ -45,6 +47,7 @@ __all__ = [
     "WorldChoice",
     "cases",
     "excluded",
+    "open",
     "read_study",
     "shipped",
     "study_file",

@@ -1,0 +1,26 @@
+"""The robots that teach: what they learnt, read from their table."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+from numpy.typing import NDArray
+
+from animat.study.plan import Plan, world_of
+
+
+def networks_of(plan: Plan, place: int, table: pa.Table) -> NDArray[np.float64]:
+    """Return the weights [robots, B, W] of a class; NaN of robots that failed.
+
+    `table` holds the rows of all robots of the class, and may hold others.
+    """
+    each = plan.classes[place]
+    own = table.filter(pc.field("identity") == each.identity).sort_by("robot")
+    inputs = len(world_of(each.teacher.world).feature_names)
+    shape = (each.robots, len(each.mind.behaviours), each.mind.weight_count(inputs))
+    weights = np.full(shape, np.nan)
+    whole = np.asarray(own["weights"].is_valid())
+    flat = own["weights"].combine_chunks().flatten()
+    weights[whole] = np.asarray(flat).reshape(-1, *shape[1:])
+    return weights
