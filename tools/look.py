@@ -3,7 +3,7 @@
 Chromium opens every page as a file, at the width of a desk, of a telephone and on paper. A page
 fails if its console says anything, if it asks for anything from outside itself, if a picture is
 not shown or has no words in its place, or if it is wider than the window. With --out DIR pictures
-of it are kept there: PAGE-desk.png, PAGE-phone.png, PAGE.pdf.
+of it are kept there: FOLDER-PAGE-desk.png, FOLDER-PAGE-phone.png, FOLDER-PAGE.pdf.
 
 Needs Chromium (Debian: apt-get install chromium); its name may be given in CHROMIUM.
 """
@@ -111,6 +111,7 @@ def browser(program: str) -> Iterator[Browser]:
 def complaints(one: Browser, page: Path, out: Path | None) -> list[str]:
     """Return what is wrong with a page."""
     found: list[str] = []
+    stem = f"{page.parent.name}-{page.stem}"
     for name, (width, height) in SIZES.items():
         target = one.ask("Target.createTarget", url="about:blank")["targetId"]
         session = one.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
@@ -130,12 +131,12 @@ def complaints(one: Browser, page: Path, out: Path | None) -> list[str]:
             shot = one.ask(
                 "Page.captureScreenshot", session, format="png", captureBeyondViewport=True
             )
-            (out / f"{page.stem}-{name}.png").write_bytes(base64.b64decode(shot["data"]))
+            (out / f"{stem}-{name}.png").write_bytes(base64.b64decode(shot["data"]))
         if out and name == "desk":
             paper = one.ask(
                 "Page.printToPDF", session, printBackground=False, paperWidth=8.27, paperHeight=11.7
             )
-            (out / f"{page.stem}.pdf").write_bytes(base64.b64decode(paper["data"]))
+            (out / f"{stem}.pdf").write_bytes(base64.b64decode(paper["data"]))
         one.ask("Target.closeTarget", targetId=target)
     return found
 

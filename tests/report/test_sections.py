@@ -1,6 +1,8 @@
 import numpy as np
+import pyarrow as pa
 import pytest
 
+from animat.report.blocks import COLUMNS_AT_MOST
 from animat.report.findings import find
 from animat.report.page import p_value, write_page
 from animat.report.sections import CONFOUNDED, NOBODY_DIED, in_short, result_sections
@@ -10,10 +12,6 @@ from .designs import crossed, lived
 
 def titles(found):
     return [section.title for section in result_sections(found)]
-
-
-def columns(section, number=0):
-    return list(section.tables[number].columns)
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +40,8 @@ def test_a_factor_has_its_levels_its_comparisons_and_its_endings(found):
     assert [row[0] for row in levels.rows] == ["BLIND", "AF"]
     assert levels.rows[0][1] == "50"
     assert comparisons.rows[0][:2] == ("AF against BLIND", "over all")
-    assert set(endings.columns[1:]) == {
+    assert list(endings.columns) == ["", "BLIND", "AF"]
+    assert {row[0] for row in endings.rows} == {
         "nutrition too low, failure", "nutrition too low, metabolism", "alive at the cap",
     }  # fmt: skip
     assert len(section.pictures) == 2
@@ -90,6 +89,28 @@ def test_many_levels_are_cut_and_it_is_said():
     assert "first and the last 20 of 50" in place.tables[0].note
     assert place.tables[0].rows[-1][0] == "place 49"
     assert list(place.pictures) == []
+
+
+def test_of_many_levels_rare_ways_to_die_are_put_together():
+    table = lived([({"place": f"place {k}"}, 300.0) for k in range(8)], 8)
+    causes = [f"cause {k % 8}" for k in range(64)]
+    place = table.column_names.index("death_cause")
+    table = table.set_column(place, "death_cause", pa.array(causes))
+    endings = result_sections(find(table, ["place"], resamples=99))[1].tables[2]
+    assert len(endings.columns) == 1 + COLUMNS_AT_MOST + 1
+    assert endings.columns[-1] == "otherwise"
+    assert len(endings.rows) == 8
+    assert all(row[-1].startswith("25.0%") for row in endings.rows)
+
+
+def test_likelihoods_have_a_row_for_each_network_and_object():
+    table = lived([({"agent": "BLIND"}, 300.0), ({"agent": "AF"}, 300.0)], 5)
+    values = pa.array([None] * 5 + [0.25] * 5, pa.float64())
+    table = table.append_column("likelihood_eat_TS", values)
+    found = find(table, ["agent"], measures=["likelihood_eat_TS"], resamples=99)
+    networks = result_sections(found)[1].tables[-1]
+    assert list(networks.columns)[1:] == ["BLIND", "AF"]
+    assert [tuple(row) for row in networks.rows] == [("eat TS", "–", "0.25")]
 
 
 def test_what_cannot_be_told_apart_is_said_loudly():

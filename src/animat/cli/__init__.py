@@ -6,6 +6,7 @@ each mistake; `--debug` shows where it came from.
 
 from animat.cli import life as life
 from animat.cli import new as new
+from animat.cli import report as report
 from animat.cli import reproduce as reproduce
 from animat.cli import run as run
 from animat.cli import schema as schema

@@ -6,7 +6,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from animat.report.estimates import Estimate
+from animat.report.estimates import Estimate, share
 from animat.report.figures.causes import causes_figure
 from animat.report.figures.margins import margins_figure
 from animat.report.figures.style import spread_out
@@ -24,14 +24,14 @@ ROWS_AT_MOST = 40
 
 BARS_AT_MOST = 24
 CURVES_AT_MOST = 8
+COLUMNS_AT_MOST = 6
 
 
 def lifespans_table(names: Sequence[str], levels: Sequence[Level]) -> TableBlock:
     """Lifespans, acts and stability, a row for each level; `names` head the parts of its name."""
-    measures = list(levels[0].measures)
     return TableBlock(
         (*names, "Lives", "Alive at the cap", "Mean lifespan (steps)", "Median lifespan (steps)",
-         "Acts that succeed", "Mean drive", *(name.replace("_", " ") for name in measures)),
+         "Acts that succeed", "Mean drive"),
         [
             (
                 *one.summary.cell,
@@ -41,7 +41,6 @@ def lifespans_table(names: Sequence[str], levels: Sequence[Level]) -> TableBlock
                 interval(one.summary.median, ",.0f"),
                 interval(one.summary.success_rate, ".1%"),
                 interval(one.summary.stability, ".3f"),
-                *(interval(one.measures[name], ".3g") for name in measures),
             )
             for one in first_and_last(levels, ROWS_AT_MOST)
         ],
@@ -49,18 +48,54 @@ def lifespans_table(names: Sequence[str], levels: Sequence[Level]) -> TableBlock
     )  # fmt: skip
 
 
+def measures_table(levels: Sequence[Level]) -> TableBlock | None:
+    """The likelihoods, a row for each and a column for each level; None if there are none."""
+    shown = first_and_last(levels, COLUMNS_AT_MOST)
+    rows = [
+        (
+            name.removeprefix("likelihood_").replace("_", " "),
+            *(interval(one.measures[name], ".2f") for one in shown),
+        )
+        for name in levels[0].measures
+    ]
+    if not rows:
+        return None
+    return TableBlock(
+        ("Network and object", *(one.label for one in shown)),
+        rows,
+        _left_out(levels, COLUMNS_AT_MOST),
+        title="Mean likelihood at the end of life",
+    )
+
+
 def endings_table(names: Sequence[str], levels: Sequence[Level]) -> TableBlock:
-    """How the lives ended: a row for each level, a column for each way, the frequent ones first."""
+    """How the lives ended, the frequent ways first.
+
+    Few levels have a column each, many a row each, and then rare ways are put together.
+    """
     total: dict[str, int] = {}
     for one in levels:
         for death in one.summary.deaths:
             total[death.label] = total.get(death.label, 0) + death.count
     ways = sorted(total, key=lambda way: -total[way])
-    rows = []
-    for one in first_and_last(levels, ROWS_AT_MOST):
-        shares = {death.label: interval(death.share, ".1%") for death in one.summary.deaths}
-        rows.append((*one.summary.cell, *(shares.get(way, "0") for way in ways)))
-    return TableBlock((*names, *ways), rows, _left_out(levels), title="How the lives ended")
+    title = "How the lives ended"
+    if len(levels) <= COLUMNS_AT_MOST:
+        rows = [(way, *(_share(one, [way]) for one in levels)) for way in ways]
+        return TableBlock(("", *(one.label for one in levels)), rows, title=title)
+    columns = {way: [way] for way in ways[:COLUMNS_AT_MOST]}
+    if len(ways) > COLUMNS_AT_MOST:
+        columns["otherwise"] = ways[COLUMNS_AT_MOST:]
+    rows = [
+        (*one.summary.cell, *(_share(one, some) for some in columns.values()))
+        for one in first_and_last(levels, ROWS_AT_MOST)
+    ]
+    return TableBlock((*names, *columns), rows, _left_out(levels), title=title)
+
+
+def _share(one: Level, ways: Sequence[str]) -> str:
+    """The share of a level's lives that ended in one of some ways."""
+    count = sum(death.count for death in one.summary.deaths if death.label in ways)
+    return interval(share(count, one.summary.lives), ".1%") if count else "0"
 
 
 def comparisons_table(margin: Margin, corrected: Sequence[float], tests: int) -> TableBlock:
@@ -150,7 +185,7 @@ def first_and_last(entries: Sequence[T], most: int) -> list[T]:
     return list(entries) if len(entries) <= most else [*entries[:half], *entries[-half:]]
 
 
-def _left_out(entries: Sequence) -> str:
-    if len(entries) <= ROWS_AT_MOST:
+def _left_out(entries: Sequence, most: int = ROWS_AT_MOST) -> str:
+    if len(entries) <= most:
         return ""
-    return f"Shown are the first and the last {ROWS_AT_MOST // 2} of {len(entries)}."
+    return f"Shown are the first and the last {most // 2} of {len(entries)}."

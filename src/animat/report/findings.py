@@ -70,7 +70,7 @@ def find(
     comparisons = [one for each in margins for one in each.comparisons]
     return Findings(
         lives,
-        level(lives, everyone, ("all lives",), sets, measures, **how),
+        level(lives, everyone, ("all",), sets, measures, **how),
         _by_behaviour(table, sets, seed, resamples),
         tuple(varying),
         _cases(lives, varying, measures, seed, resamples),

@@ -1,6 +1,7 @@
 """What is found in the lives of a study, as parts of the page."""
 
 import math
+from collections.abc import Sequence
 
 from animat.report.blocks import (
     BARS_AT_MOST,
@@ -11,6 +12,7 @@ from animat.report.blocks import (
     endings_table,
     lifespans_table,
     margins_picture,
+    measures_table,
     trend_picture,
 )
 from animat.report.estimates import LEVEL
@@ -32,10 +34,13 @@ CONFOUNDED = (
 def in_short(found: Findings) -> list[str]:
     """A sentence on all lives, and one on each factor, those that differ most first."""
     whole = found.overall.summary
+    lifespan = (
+        f" Mean lifespan {interval(whole.mean, ',.0f')} steps, median"
+        f" {interval(whole.median, ',.0f')}."
+    )
     told = [
         f"{found.deaths:,} of {whole.lives:,} lives ended, {whole.alive:,} went on at their cap."
-        f" Mean lifespan {interval(whole.mean, ',.0f')} steps, median"
-        f" {interval(whole.median, ',.0f')}. Acts that succeeded"
+        f"{lifespan if found.deaths else ''} Acts that succeeded"
         f" {interval(whole.success_rate, '.1%')}, mean drive {interval(whole.stability, '.3f')}."
     ]
     if found.deaths:
@@ -64,7 +69,7 @@ def overall_section(found: Findings) -> Section:
         for name, (count, share) in found.by_behaviour.items()
         if count
     ]
-    tables = [lifespans_table(("",), [found.overall]), endings_table(("",), [found.overall])]
+    tables = _tables(found, ("",), [found.overall])
     if acts:
         tables.append(TableBlock(("Behaviour", "Acts", "Acts that succeed"), acts, title="Acts"))
     return Section(
@@ -84,10 +89,7 @@ def cases_section(found: Findings) -> Section:
     """Every case alone."""
     return Section(
         "The cases",
-        tables=[
-            lifespans_table(found.varying, found.cases),
-            endings_table(found.varying, found.cases),
-        ],
+        tables=_tables(found, found.varying, found.cases),
         pictures=_pictures(found, found.cases),
     )
 
@@ -126,16 +128,16 @@ def margin_section(found: Findings, place: int) -> Section:
     margin = found.margins[place]
     before = sum(len(each.comparisons) for each in found.margins[:place])
     corrected = found.levels_p[before : before + len(margin.comparisons)]
-    tables = [lifespans_table(("Level",), margin.levels)]
+    tables = _tables(found, ("Level",), margin.levels)
     if found.deaths:
-        tables.append(comparisons_table(margin, corrected, len(found.levels_p)))
-        tables.append(endings_table(("Level",), margin.levels))
+        tables.insert(1, comparisons_table(margin, corrected, len(found.levels_p)))
+    how = _how_compared(margin, alone=len(found.varying) == 1)
     pictures = _pictures(found, margin.levels, ordered=margin.factor.ordered)
     if found.deaths and margin.factor.values is not None:
         pictures.insert(0, trend_picture(margin, found.lives))
     return Section(
         margin.factor.name,
-        [f"{_how_compared(margin)} The intervals resample {margin.resampled}."],
+        [f"{how} The intervals resample {margin.resampled}."],
         tables=tables,
         pictures=pictures,
         notices=[CONFOUNDED] if margin.confounded else (),
@@ -172,7 +174,9 @@ def _factor_in_short(margin: Margin, corrected: float) -> str:
     return f"{margin.factor.name}: {shown}{ends}, {margin.test.name} p {said} after correction."
 
 
-def _how_compared(margin: Margin) -> str:
+def _how_compared(margin: Margin, *, alone: bool) -> str:
+    if alone:
+        return "Nothing else differs between the lives of this study."
     if margin.confounded:
         return "Levels are compared as they are."
     if margin.matched:
@@ -193,9 +197,15 @@ def _tested(margin: Margin) -> str:
     return f"{test.name}, chi² = {test.statistic:,.1f}, {test.freedom} d.f."
 
 
-def _pictures(
-    found: Findings, levels: tuple[Level, ...] | list[Level], *, ordered: bool = False
-) -> list[Picture]:
+def _tables(found: Findings, names: Sequence[str], levels: Sequence[Level]) -> list[TableBlock]:
+    tables = [lifespans_table(names, levels)]
+    if found.deaths:
+        tables.append(endings_table(names, levels))
+    networks = measures_table(levels)
+    return [*tables, networks] if networks else tables
+
+
+def _pictures(found: Findings, levels: Sequence[Level], *, ordered: bool = False) -> list[Picture]:
     if not found.deaths:
         return []
     pictures = []
