@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 
 from animat.settings import SettingsError
 
@@ -47,3 +48,26 @@ def write_whole(path: Path, content: bytes) -> None:
     """Write `content` to `path`, replacing what was there. Raises SettingsError."""
     with whole(path) as partial:
         partial.write_bytes(content)
+
+
+def check_new_file(path: Path | None, suffixes: tuple[str, ...], force: bool) -> None:
+    """Refuse, before any work, a file that could not be written at its end.
+
+    Raises SettingsError, also where it is there already and not `force`; None is no file.
+    """
+    if path is None:
+        return
+    if path.suffix.lower() not in suffixes:
+        raise SettingsError(f"{path}: give a name that ends in {' or '.join(suffixes)}")
+    try:
+        if path.is_dir():
+            raise SettingsError(f"{path}: is a directory; give the name of a file")
+        if path.exists() and not force:
+            raise SettingsError(f"{path}: is there already; --force replaces it")
+        if not path.parent.is_dir():
+            raise SettingsError(f"{path}: there is no directory {path.parent}; make it first")
+        # Only writing tells: permissions say nothing of a full or a read-only disk.
+        with NamedTemporaryFile(prefix=f".{path.name}.", suffix=".part", dir=path.parent):
+            pass
+    except OSError as error:
+        raise SettingsError(f"{path}: cannot be written: {error.strerror}") from None

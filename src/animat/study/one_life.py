@@ -7,19 +7,17 @@ trace and for its figure, and memory does not grow with its length.
 from __future__ import annotations
 
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow.parquet as pq
 
-from animat.files import whole
+from animat.files import check_new_file, whole
 from animat.life.life import Life, Recording, check, live, lived
 from animat.life.setting import bring_together
 from animat.life.trace import table
 from animat.mind.mind import Mind
 from animat.progress import Telling
-from animat.settings import SettingsError
 from animat.study.settings import LifeSettings
 from animat.world.world import World
 
@@ -51,8 +49,8 @@ def live_one(asked: OneLife, tell: Telling) -> Life:
     be lived or written.
     """
     check(asked.seed, asked.index, asked.steps)
-    _check_file(asked.trace, (".parquet",), asked.force)
-    _check_file(asked.figure, DRAWINGS, asked.force)
+    check_new_file(asked.trace, (".parquet",), asked.force)
+    check_new_file(asked.figure, DRAWINGS, asked.force)
     world = asked.settings.world.world()
     mind = asked.settings.mind
     if mind.agent == "AF" and mind.networks is None:
@@ -138,23 +136,3 @@ def _write_trace(life: Life, path: Path) -> None:
         writer.write_table(first)
         for part in parts:
             writer.write_table(table(part, life.mind, life.world))
-
-
-def _check_file(path: Path | None, suffixes: tuple[str, ...], force: bool) -> None:
-    """Refuse, before any work, a file that could not be written at its end."""
-    if path is None:
-        return
-    if path.suffix.lower() not in suffixes:
-        raise SettingsError(f"{path}: give a name that ends in {' or '.join(suffixes)}")
-    try:
-        if path.is_dir():
-            raise SettingsError(f"{path}: is a directory; give the name of a file")
-        if path.exists() and not force:
-            raise SettingsError(f"{path}: is there already; --force replaces it")
-        if not path.parent.is_dir():
-            raise SettingsError(f"{path}: there is no directory {path.parent}; make it first")
-        # Only writing tells: permissions say nothing of a full or a read-only disk.
-        with NamedTemporaryFile(prefix=f".{path.name}.", suffix=".part", dir=path.parent):
-            pass
-    except OSError as error:
-        raise SettingsError(f"{path}: cannot be written: {error.strerror}") from None
