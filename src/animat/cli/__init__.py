@@ -4,6 +4,7 @@ Exit codes: 0 done, 1 failed, 2 wrong usage or input, 130 interrupted. An error 
 each mistake; `--debug` shows where it came from.
 """
 
+from animat.cli import check as check
 from animat.cli import life as life
 from animat.cli import new as new
 from animat.cli import reproduce as reproduce
