@@ -50,13 +50,11 @@ def write_whole(path: Path, content: bytes) -> None:
         partial.write_bytes(content)
 
 
-def check_new_file(path: Path | None, suffixes: tuple[str, ...], force: bool) -> None:
-    """Refuse, before any work, a file that could not be written at its end.
+def check_writable(path: Path, suffixes: tuple[str, ...], *, force: bool) -> None:
+    """Refuse, before any work, a file that could not be written at its end. Raises SettingsError.
 
-    Raises SettingsError, also where it is there already and not `force`; None is no file.
+    Its name must end in one of `suffixes`; only with `force` may it be there already.
     """
-    if path is None:
-        return
     if path.suffix.lower() not in suffixes:
         raise SettingsError(f"{path}: give a name that ends in {' or '.join(suffixes)}")
     try:

@@ -8,18 +8,21 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Iterator
+from datetime import date, time
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from animat.mistakes import mistakes, nearest
+from animat.mistakes import mistakes, nearest, written
 
 __all__ = [
     "Settings",
     "SettingsError",
     "explain",
     "nearest",
+    "parse_text",
     "parse_toml",
     "read_toml",
     "validated",
@@ -77,20 +80,33 @@ def parse_toml(path: Path | str, largest: int = LARGEST_FILE) -> dict[str, Any]:
     """Return what a TOML file of at most `largest` bytes says, of whatever it is.
 
     Raises:
-        SettingsError: the file cannot be read, is empty or is no TOML.
+        SettingsError: the file cannot be read, is empty or is no TOML, or has a date.
     """
-    data = _parsed(_text(Path(path), largest), path)
+    data = parse_text(_text(Path(path), largest), str(path))
     if not data:
         raise SettingsError(f"{path}: is empty: it sets nothing")
+    return data
+
+
+def parse_text(text: str, where: str) -> dict[str, Any]:
+    """Return what TOML says. Raises SettingsError, its lines led by `where`."""
+    data = _parsed(text, where)
     if _is_deeper_than(data, DEEPEST):
-        raise SettingsError(f"{path}: is nested too deeply: more than {DEEPEST} levels")
+        raise SettingsError(f"{where}: is nested too deeply: more than {DEEPEST} levels")
+    dates = [
+        f"{where}: key {written(key)} = {value}: is a date or a time; put text in quotes"
+        for key, value in _leaves(data, ())
+        if isinstance(value, date | time)
+    ]
+    if dates:
+        raise SettingsError(*dates)
     return data
 
 
 def validated(data: dict[str, Any], model: type[Model]) -> Model:
     """Return what TOML says as settings of `model`. Raises pydantic's ValidationError."""
     # By way of JSON because there a list may become a tuple and a string a path, even strictly.
-    return model.model_validate_json(json.dumps(data, default=str))
+    return model.model_validate_json(json.dumps(data))
 
 
 def _text(path: Path, largest: int) -> str:
@@ -116,7 +132,7 @@ def _text(path: Path, largest: int) -> str:
         raise SettingsError(f"{path}: is not UTF-8 text (line {line})") from None
 
 
-def _parsed(text: str, path: Path | str) -> dict[str, Any]:
+def _parsed(text: str, path: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except RecursionError:
@@ -127,6 +143,15 @@ def _parsed(text: str, path: Path | str) -> dict[str, Any]:
         raise SettingsError(f"{path}: is not TOML: {what}") from None
     except ValueError:
         raise SettingsError(f"{path}: has a whole number of too many digits") from None
+
+
+def _leaves(value: Any, key: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], Any]]:
+    """Yield all values that are no tables or lists, each with its key."""
+    if isinstance(value, dict | list):
+        for part, inner in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _leaves(inner, (*key, part))
+    else:
+        yield key, value
 
 
 def _is_deeper_than(data: dict[str, Any], levels: int) -> bool:

@@ -123,6 +123,13 @@ class Mind(Settings):
     learning: Learning = Learning()
     networks: Networks | None = Field(default=None, exclude=True, repr=False)
 
+    @field_validator("networks", mode="before")
+    @classmethod
+    def _from_python(cls, value: Any) -> Any:
+        if not isinstance(value, Networks | None):
+            raise ValueError("networks are those of a life, and given in Python only")
+        return value
+
     @field_validator("selector")
     @classmethod
     def _known_selector(cls, value: Function | None) -> Function | None:

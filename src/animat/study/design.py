@@ -2,60 +2,59 @@
 
 from __future__ import annotations
 
-import copy
-import itertools
-import json
-import math
-from collections.abc import Iterator
+import re
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-from pydantic import Field, ValidationError
+import tomli_w
+from pydantic import Field
 
-from animat.mistakes import allowed_types, mistakes, nearest, written
-from animat.settings import Settings, SettingsError, validated
-from animat.study.keys import Key, UnknownKeyError, annotation_of, put, read_key
-from animat.study.sampling import Levels, Range, Sample, Scalar
-from animat.study.settings import PUBLISHED, LifeSettings, WorldChoice
+from animat.settings import Settings, SettingsError
+from animat.study.axes import axes, combinations, factors, left_out
+from animat.study.factors import Factor, Scalar, Value, Values
+from animat.study.refusals import design_mistakes, without
+from animat.study.sampling import Sample
+from animat.study.sections import resolver
+from animat.study.settings import LifeSettings, Teacher
+from animat.study.telling import InCases, told
 
 if TYPE_CHECKING:
-    from animat.study.study import Study, Teacher
-
-MOST_CASES = 100_000
-"""Combinations of a design, those left out included."""
-
-MOST_LINES = 20
-"""Mistakes of a design that are told one by one."""
+    from animat.study.study import Study
 
 
 class Exclusion(Settings):
     """Combinations left out: where every factor named has one of the values given, and why."""
 
-    when: Annotated[dict[str, Scalar | list[Scalar]], Field(min_length=1)]
+    when: Annotated[dict[str, Value | Values], Field(min_length=1)]
     why: Annotated[str, Field(min_length=1)]
+
+    def listed(self, factor: str) -> list[Scalar]:
+        """Return the values of a factor that are left out."""
+        values = self.when[factor]
+        return values if isinstance(values, list) else [values]
 
 
 class Design(Settings):
     """Every combination of the grid's factors, the sample's points and the cases listed."""
 
-    grid: dict[str, list[Scalar] | Levels] = {}
+    grid: dict[str, Factor] = {}
     sample: Sample | None = None
-    cases: list[dict[str, Scalar]] = []
+    cases: list[Annotated[dict[str, Value], Field(min_length=1)]] = []
     exclude: list[Exclusion] = []
 
     def to_toml(self) -> str:
-        """Return the design as a part of a study file; the order of factors is kept."""
+        """Return the design as a part of a study file, with its factors in their order."""
+        # TOML writes inner tables after all values, which would change the order of factors.
+        data = self.model_dump(mode="json", exclude_none=True)
         text = ""
-        if self.grid:
-            text += "\n[design.grid]\n" + _lines(self.grid)
-        if self.sample is not None:
-            sample = self.sample.model_dump(mode="json")
-            over = sample.pop("over")
-            text += "\n[design.sample]\n" + _lines(sample)
+        if data["grid"]:
+            text += "\n[design.grid]\n" + _lines(data["grid"])
+        if "sample" in data:
+            over = data["sample"].pop("over")
+            text += "\n[design.sample]\n" + _lines(data["sample"])
             text += "\n[design.sample.over]\n" + _lines(over)
-        for row in self.cases:
-            text += "\n[[design.cases]]\n" + _lines(row)
-        for exclusion in self.exclude:
-            text += "\n[[design.exclude]]\n" + _lines(exclusion.model_dump(mode="json"))
+        for name in ("cases", "exclude"):
+            for row in data[name]:
+                text += f"\n[[design.{name}]]\n" + _lines(row)
         return text
 
 
@@ -63,7 +62,8 @@ class Case(NamedTuple):
     """A case: what is lived in it, and the values of the factors that make it this case.
 
     Its lives are those of `seed` from `first` on, up to `steps` steps each; an AF has the networks
-    of its `teacher`. `settings` name no world of the study's: each stands in its place.
+    of its `teacher`, other agents have none. No name of a world of the study is left in `settings`
+    and `teacher`: the world stands in its place.
     """
 
     number: int
@@ -76,33 +76,67 @@ class Case(NamedTuple):
 
 
 class Excluded(NamedTuple):
-    """Combinations that a rule left out, and its reason."""
+    """How many combinations a rule left out, and its reason."""
 
     why: str
     count: int
 
 
-class Option(NamedTuple):
-    """One way an axis of the design can be: its factors' values, and the settings they set."""
-
-    factors: dict[str, Scalar]
-    changes: dict[Key, Any]
-
-
 def cases(study: Study) -> list[Case]:
-    """Return the cases of a study, the first factor varying slowest.
+    """Return the cases of a study, the first factor varying slowest, numbered from 0.
 
     Raises:
-        SettingsError: a design that cannot be, or cases that cannot be lived.
+        SettingsError: with a line for every mistake in the design, and for every mistake that
+            some of the cases share.
     """
-    return list(_cases(study, list(_combinations(study.design))))
+    base = study.varied()
+    found = design_mistakes(study.design, base)
+    lines = [line for mistake in found for line in mistake.lines()]
+    sound = without(study.design, found) if found else study.design
+    if sound is None:
+        raise SettingsError(*told(lines))
+    good, refused = _laid_out(study, sound, base)
+    lines += [cases_with_it.told(line, len(good)) for line, cases_with_it in refused.items()]
+    if lines:
+        raise SettingsError(*told(lines))
+    return good
+
+
+def _laid_out(
+    study: Study, design: Design, base: dict[str, Any]
+) -> tuple[list[Case], dict[str, InCases]]:
+    """Return a case for every combination of a design, and what is wrong with some of them."""
+    along = axes(design, study)
+    resolve = resolver(base, along)
+    laid_out: list[Case] = []
+    refused: dict[str, InCases] = {}
+    for combination in combinations(along):
+        if left_out(design, along, combination) is not None:
+            continue
+        named = factors(along, combination)
+        settings, steps, teacher, problems = resolve(combination)
+        for line in problems:
+            refused[line] = refused.get(line, InCases(0, named, named)).and_in(named)
+        number = len(laid_out)
+        first = 0 if study.paired else number * study.lives
+        laid_out.append(Case(number, named, settings, study.seed, steps, teacher, first))
+    if not laid_out:
+        raise SettingsError("key design.exclude: leaves no case")
+    return laid_out, refused
 
 
 def excluded(study: Study) -> list[Excluded]:
-    """Return how many combinations each rule leaves out, each counted for the first that does."""
+    """Return how many combinations each rule leaves out, each counted for the first that does.
+
+    Raises SettingsError for a design with mistakes.
+    """
+    found = design_mistakes(study.design, study.varied())
+    if found:
+        raise SettingsError(*told(line for mistake in found for line in mistake.lines()))
+    along = axes(study.design, study)
     counts = [0] * len(study.design.exclude)
-    for combination in itertools.product(*_axes(study.design)):
-        rule = _rule(study.design, _factors(combination))
+    for combination in combinations(along) if counts else ():
+        rule = left_out(study.design, along, combination)
         if rule is not None:
             counts[rule] += 1
     return [
@@ -110,136 +144,20 @@ def excluded(study: Study) -> list[Excluded]:
     ]
 
 
-def _combinations(design: Design) -> Iterator[tuple[Option, ...]]:
-    for combination in itertools.product(*_axes(design)):
-        if _rule(design, _factors(combination)) is None:
-            yield combination
-
-
-def _axes(design: Design) -> list[list[Option]]:
-    from animat.study.study import CaseSettings
-
-    sizes = [len(levels) for levels in design.grid.values()]
-    sizes += [design.sample.points] if design.sample else []
-    sizes += [len(design.cases)] if design.cases else []
-    if math.prod(sizes) > MOST_CASES:
-        raise SettingsError(
-            f"design: makes {math.prod(sizes):,} combinations; allowed are {MOST_CASES:,}"
-        )
-    axes = [_options(name, levels) for name, levels in design.grid.items()]
-    if design.sample:
-        points = []
-        for shares in design.sample.shares():
-            point = Option({}, {})
-            for (name, over), share in zip(design.sample.over.items(), shares, strict=True):
-                if isinstance(over, Range):
-                    key = read_key(name)
-                    kinds = allowed_types(annotation_of(CaseSettings, key))
-                    value = over.at(float(share), int in kinds)
-                    option = Option({name: value}, {key: value})
-                else:
-                    options = _options(name, over)
-                    option = options[int(share * len(options))]
-                point.factors.update(option.factors)
-                point.changes.update(option.changes)
-            points.append(point)
-        axes.append(points)
-    if design.cases:
-        axes.append([Option(row, {read_key(k): v for k, v in row.items()}) for row in design.cases])
-    return axes
-
-
-def _options(name: str, levels: list[Scalar] | Levels) -> list[Option]:
-    if isinstance(levels, dict):
-        return [
-            Option({name: level}, {read_key(k): v for k, v in changes.items()})
-            for level, changes in levels.items()
-        ]
-    return [Option({name: value}, {read_key(name): value}) for value in levels]
-
-
-def _factors(combination: tuple[Option, ...]) -> dict[str, Scalar]:
-    return {name: value for option in combination for name, value in option.factors.items()}
-
-
-def _rule(design: Design, factors: dict[str, Scalar]) -> int | None:
-    for number, rule in enumerate(design.exclude):
-        if all(
-            factors.get(name) in (values if isinstance(values, list) else [values])
-            for name, values in rule.when.items()
-        ):
-            return number
-    return None
-
-
-def _cases(study: Study, combinations: list[tuple[Option, ...]]) -> Iterator[Case]:
-    from animat.study.study import CaseSettings
-
-    base = study.model_dump(
-        mode="json", include=set(CaseSettings.model_fields), exclude_unset=True, exclude_none=True
-    )
-    problems = []
-    for number, combination in enumerate(combinations):
-        data = copy.deepcopy(base)
-        try:
-            for option in combination:
-                for key, value in option.changes.items():
-                    put(data, CaseSettings, key, value)
-            own = validated(data, CaseSettings)
-            world = _resolved(own.world, own.worlds)
-            teacher = own.teacher
-            if own.mind.agent != "AF":
-                teacher = None
-            elif teacher is None:
-                raise SettingsError("agent AF needs networks: say in [teacher] who learnt them")
-            else:
-                teacher = teacher.model_copy(update={"world": _resolved(teacher.world, own.worlds)})
-        except ValidationError as error:
-            problems += mistakes(error, CaseSettings)
-            continue
-        except (UnknownKeyError, SettingsError) as error:
-            problems.append(str(error))
-            continue
-        yield Case(
-            number,
-            _factors(combination),
-            LifeSettings(world=world, robot=own.robot, mind=own.mind),
-            study.seed,
-            own.steps,
-            teacher,
-            0 if study.paired else number * study.lives,
-        )
-    if problems:
-        raise SettingsError(*dict.fromkeys(problems))
-
-
-def _resolved(choice: WorldChoice, worlds: dict[str, WorldChoice]) -> WorldChoice:
-    """Return the world chosen; of one of the study's own, with what is set beside its name."""
-    if choice.layout in worlds:
-        own = worlds[choice.layout]
-        beside = {name: getattr(choice, name) for name in choice.model_fields_set - {"layout"}}
-        named = {"name": own.name or choice.layout}
-        return WorldChoice(**{**own.model_dump(), **named, **beside})
-    if choice.layout in {*PUBLISHED, "random"} or choice.layout.endswith(".toml"):
-        return choice
-    known = [*PUBLISHED, *worlds]
-    raise SettingsError(
-        f'world "{choice.layout}": no such world, and no .toml file of one'
-        f"{nearest(choice.layout, known)}"
-    )
-
-
 def _lines(table: dict[str, Any]) -> str:
-    return "".join(f"{written((key,))} = {_inline(value)}\n" for key, value in table.items())
+    return "".join(f"{_bare(key)} = {_inline(value)}\n" for key, value in table.items())
 
 
 def _inline(value: Any) -> str:
     """Return a value as TOML on one line."""
-    if isinstance(value, Range):
-        return _inline(value.model_dump())
     if isinstance(value, dict):
-        pairs = (f"{json.dumps(key)} = {_inline(inner)}" for key, inner in value.items())
+        pairs = (f"{_bare(key)} = {_inline(inner)}" for key, inner in value.items())
         return "{ " + ", ".join(pairs) + " }" if value else "{}"
     if isinstance(value, list):
         return "[" + ", ".join(map(_inline, value)) + "]"
-    return json.dumps(value)
+    return tomli_w.dumps({"value": value}).removeprefix("value = ").rstrip("\n")
+
+
+def _bare(key: str) -> str:
+    """Return a key as TOML writes it, in quotes only where it must be."""
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else _inline(key)

@@ -19,7 +19,7 @@ import pyarrow.csv as pc_csv
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from animat.files import check_new_file, whole
+from animat.files import check_writable, whole
 from animat.settings import SettingsError
 from animat.study.results import Results
 from animat.study.store import STUDY
@@ -37,7 +37,7 @@ def export(results: Results, kind: str, path: Path, *, force: bool = False) -> i
     """
     if kind not in FORMATS:
         raise SettingsError(f'"{kind}": no such format; allowed are {", ".join(FORMATS)}')
-    check_new_file(path, (f".{kind}",), force)
+    check_writable(path, (f".{kind}",), force=force)
     with whole(path) as partial:
         if kind == "nc":
             return _write_netcdf(results, partial)

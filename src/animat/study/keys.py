@@ -1,4 +1,4 @@
-"""Dotted keys: the name of a setting as a design, a shell or a message gives it.
+"""Dotted keys: the name of a setting as a design or a shell gives it.
 
 `mind.variables.nutrition.rate` is the key of one setting. A part that is no bare word stands in
 quotes, as in TOML: `mind.variables."my own".rate`.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel
 
@@ -17,99 +17,99 @@ from animat.mistakes import allowed_types, inside, is_model, nearest, plain, wri
 
 Key = tuple[str, ...]
 
-_PART = r"""[A-Za-z0-9_-]+|"[^"\\\x00-\x1f]*"|'[^'\x00-\x1f]*'"""
-
 VARIABLES: Key = ("mind", "variables")
-"""The one table in which a key may name what is not written down: it is in the physiology."""
+"""The one table in which a key may go into what is not written down: the physiology has it."""
+
+_PART = r"""[A-Za-z0-9_-]+|"[^"\\\x00-\x1f]*"|'[^'\x00-\x1f]*'"""
 
 
 class UnknownKeyError(ValueError):
-    """A key that is none."""
+    """A key that no setting has."""
 
 
 def read_key(text: str) -> Key:
-    """Return the parts of a dotted key. Raises UnknownKeyError."""
+    """Return the parts of a dotted key. Raises UnknownKeyError for what is written like none."""
     if not re.fullmatch(rf"({_PART})(\.({_PART}))*", text):
         raise UnknownKeyError(f"{plain(text)} is no key; write it as mind.learning.cycles")
-    return tuple(part[1:-1] if part[0] in "\"'" else part for part in re.findall(_PART, text))
+    return tuple(part.strip("\"'") for part in re.findall(_PART, text))
 
 
 def put(data: dict[str, Any], model: type[BaseModel], key: Key, value: Any) -> None:
-    """Set a key in what is to become settings of `model`, leaving all beside it as it was.
+    """Set a key in what is to become settings of `model`, and leave all beside it as it was.
 
     Raises UnknownKeyError for a key that no setting has, with the nearest that one has.
     """
     here: Any = model
-    node: Any = data
+    node = data
     for depth, part in enumerate(key):
-        below = _entered(data, model, here, node, key, depth)
+        here = table_of(here)
+        if part not in (known := _known(here, node, key, depth)):
+            close = nearest(written(key), known_keys(data, model))
+            raise UnknownKeyError(
+                f"unknown key{close if 'did you mean' in close else nearest(part, known)}"
+            )
         if depth == len(key) - 1:
             node[part] = value
             return
         if part not in node:
             node[part] = _default(here, part)
-        node, here = node[part], below
-        if not isinstance(node, dict):
+        node = node[part]
+        here = inside(here, part)
+        if not isinstance(node, dict) or table_of(here) is None:
             raise UnknownKeyError(f"{written(key[: depth + 1])} is no table, so it has no keys")
+
+
+def known_keys(data: dict[str, Any], model: type[BaseModel]) -> list[str]:
+    """Return the keys of all settings, also of what is in tables written in `data`."""
+    return [written(key) for key in _keys(model, data, ())]
 
 
 def annotation_of(model: type[BaseModel], key: Key) -> Any:
     """Return what a setting may be, as the model has it; None where no setting has the key."""
     here: Any = model
     for part in key:
-        here = inside(_table(here), part)
+        here = inside(table_of(here), part)
     return here
 
 
-def known_keys(data: dict[str, Any], model: type[BaseModel]) -> list[str]:
-    """Return the keys of all settings, those of the tables that are written in `data` as well."""
-    return [written(key) for key in _keys(model, data, ())]
-
-
-def _entered(
-    data: dict[str, Any], model: type[BaseModel], here: Any, node: dict[str, Any], key: Key, d: int
-) -> Any:
-    """Return what stands under part `d` of a key. Raises UnknownKeyError where nothing can."""
-    table = _table(here)
-    known: list[str] = []
-    if is_model(table):
-        known = list(table.model_fields)
-    elif _holds_tables(table):
-        known = _entries(node, key[:d])
-        if d == len(key) - 1 or key[:d] == VARIABLES:
-            known.append(key[d])
-    elif table is not None:
-        known = [key[d]]
-    if key[d] not in known:
-        close = nearest(written(key), known_keys(data, model))
-        if "did you mean" not in close:
-            close = nearest(key[d], known)
-        raise UnknownKeyError(f"unknown key{close}")
-    return inside(table, key[d])
-
-
-def _table(annotation: Any) -> Any:
-    """Return the branch of an annotation that holds keys, None if it has none."""
+def table_of(annotation: Any) -> Any:
+    """Return that option of an annotation which has keys, a model or a dict; None for none."""
     for option in allowed_types(annotation):
-        if is_model(option) or getattr(option, "__origin__", None) is dict:
+        if is_model(option) or get_origin(option) is dict:
             return option
     return None
 
 
+def _known(table: Any, node: dict[str, Any], key: Key, depth: int) -> list[str]:
+    """Return what part `depth` of a key may be, where `table` is what it stands in."""
+    if is_model(table):
+        return fields(table)
+    if not _holds_tables(table):
+        return [key[depth]]
+    entries = _entries(node, key[:depth])
+    # A whole table may be new, but a part of one that is not there would be a misspelling.
+    may_be_new = depth == len(key) - 1 or key[:depth] == VARIABLES
+    return [*entries, key[depth]] if may_be_new else entries
+
+
+def fields(model: type[BaseModel]) -> list[str]:
+    """Return the settings of a model that can be written down."""
+    return [name for name, field in model.model_fields.items() if not field.exclude]
+
+
 def _holds_tables(table: Any) -> bool:
-    return table is not None and not is_model(table) and is_model(_table(table.__args__[1]))
+    return table_of(get_args(table)[1]) is not None
 
 
 def _entries(node: dict[str, Any], key: Key) -> list[str]:
     return list(dict.fromkeys([*node, *(PHYSIOLOGIES["excess"] if key == VARIABLES else ())]))
 
 
-def _default(holder: Any, part: str) -> dict[str, Any]:
-    """Return the table that is in force where none is written."""
-    table = _table(holder)
+def _default(table: Any, part: str) -> dict[str, Any]:
+    """Return the table that is in force under a key where none is written."""
     if not is_model(table):
         return {}
-    default = table.model_fields[part].get_default(call_default_factory=True)
+    default = table.model_fields[part].default
     if not isinstance(default, dict):
         return {}
     return {
@@ -121,17 +121,17 @@ def _default(holder: Any, part: str) -> dict[str, Any]:
 
 
 def _keys(annotation: Any, node: Any, key: Key) -> Iterator[Key]:
-    table = _table(annotation)
+    table = table_of(annotation)
     node = node if isinstance(node, dict) else {}
-    if is_model(table):
-        for name in table.model_fields:
+    if table is None:
+        yield key
+    elif is_model(table):
+        for name in fields(table):
             below = node.get(name, _default(table, name))
             yield from _keys(table.model_fields[name].annotation, below, (*key, name))
     elif _holds_tables(table):
         for name in _entries(node, key):
-            yield from _keys(table.__args__[1], node.get(name), (*key, name))
-    elif table is not None:
-        yield key
-        yield from ((*key, name) for name in node)
+            yield from _keys(get_args(table)[1], node.get(name), (*key, name))
     else:
+        yield from ((*key, name) for name in node)
         yield key

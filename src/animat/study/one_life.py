@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pyarrow.parquet as pq
 
-from animat.files import check_new_file, whole
+from animat.files import check_writable, whole
 from animat.life.life import Life, Recording, check, live, lived
 from animat.life.setting import bring_together
 from animat.life.trace import table
@@ -49,8 +49,10 @@ def live_one(asked: OneLife, tell: Telling) -> Life:
     be lived or written.
     """
     check(asked.seed, asked.index, asked.steps)
-    check_new_file(asked.trace, (".parquet",), asked.force)
-    check_new_file(asked.figure, DRAWINGS, asked.force)
+    if asked.trace:
+        check_writable(asked.trace, (".parquet",), force=asked.force)
+    if asked.figure:
+        check_writable(asked.figure, DRAWINGS, force=asked.force)
     world = asked.settings.world.world()
     mind = asked.settings.mind
     if mind.agent == "AF" and mind.networks is None:

@@ -5,46 +5,47 @@ A study file is a settings file with more in it; docs/studies.md describes it.
 
 from __future__ import annotations
 
-import json
 import re
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tomli_w
-from pydantic import BeforeValidator, Field, ValidationError, field_validator, model_validator
+from pydantic import AfterValidator, Field, ValidationError, field_validator, model_validator
+from pydantic_core import PydanticSerializationError
 
-from animat.life.life import LONGEST, Recording
-from animat.mistakes import plain
-from animat.settings import Settings, SettingsError, explain, parse_toml, validated
-from animat.study.design import Design
-from animat.study.keys import UnknownKeyError, put, read_key
-from animat.study.settings import PUBLISHED, LifeSettings, WorldChoice
+from animat.life.life import Recording
+from animat.life.setting import LifeError
+from animat.mistakes import mistakes, plain, written
+from animat.settings import Settings, SettingsError, parse_text, parse_toml, validated
+from animat.study.design import Design, cases
+from animat.study.factors import each_once
+from animat.study.keys import Key, UnknownKeyError, put, read_key
+from animat.study.refusals import VARIES, design_mistakes, varied_keys
+from animat.study.settings import CaseSettings, Teacher
+from animat.study.shipped import LONGEST_NAME, is_name
+from animat.study.telling import told
 
-Steps = Annotated[int, Field(ge=1, le=LONGEST)]
+__all__ = ["Record", "Study", "Teacher", "read_study"]
 
 MOST_LIVES = 10**9
-"""Lives a case may have; so the index of every life stays a whole number of 64 bits."""
+"""Lives a case may have; so the index of every life is a whole number of 63 bits."""
 
 
-def _by_name(world: Any) -> Any:
-    return {"layout": world} if isinstance(world, str) else world
-
-
-class Teacher(Settings):
-    """Who learnt the networks of AF: life i has those of robot i modulo `robots`.
-
-    The robots have the mind of the case, with the agent LEARNING.
-    """
-
-    robots: Annotated[int, Field(ge=1, le=1_000_000)] = 100
-    steps: Steps = 300_000
-    world: Annotated[WorldChoice, BeforeValidator(_by_name)] = WorldChoice()
+def _named_like_a_directory(name: str) -> str:
+    if not is_name(name):
+        raise ValueError(
+            f"must be up to {LONGEST_NAME} letters, digits, blanks and . _ -, the first and the"
+            " last a letter or digit: results go to a directory of this name"
+        )
+    return name
 
 
 class Record(Settings):
-    """The traces that are written: `what` of the first `lives` lives of every case."""
+    """The traces that are written: `what` of each of the first `lives` lives of every case.
+
+    `what` is "all", "every:N" or "last:N" steps.
+    """
 
     what: str
     lives: Annotated[int, Field(ge=1)] = 1
@@ -52,99 +53,160 @@ class Record(Settings):
     @field_validator("what")
     @classmethod
     def _known(cls, what: str) -> str:
-        Recording.parse(what)
+        try:
+            Recording.parse(what)
+        except LifeError as error:
+            raise ValueError(str(error).partition("; ")[2]) from None
         return what
-
-
-class CaseSettings(LifeSettings):
-    """What may differ from case to case."""
-
-    steps: Steps = 300_000
-    worlds: dict[str, WorldChoice] = {}
-    teacher: Teacher | None = None
 
 
 class Study(CaseSettings):
     """A study, as its file has it."""
 
-    name: Annotated[str, Field(pattern=r"^\w[\w .-]{0,79}$")]
+    name: Annotated[str, AfterValidator(_named_like_a_directory)]
     seed: Annotated[int, Field(ge=0, lt=1 << 63)] = 0
     lives: Annotated[int, Field(ge=1, le=MOST_LIVES)] = 100
     paired: bool = True
-    measures: list[Literal["likelihoods", "learning_curve"]] = []
+    measures: Annotated[
+        list[Literal["likelihoods", "learning_curve"]], AfterValidator(each_once)
+    ] = []
     record: Record | None = None
     design: Design = Design()
 
     @model_validator(mode="after")
     def _possible(self) -> Study:
         problems = []
-        for name in self.worlds:
-            if name in {*PUBLISHED, "random"} or name.endswith(".toml") or not name:
-                problems.append(f"worlds.{plain(name)}: this name is taken; give it another")
         if self.record is not None and self.record.lives > self.lives:
-            problems.append(f"record.lives = {self.record.lives} is more than lives = {self.lives}")
+            problems.append(f"record.lives = {self.record.lives} exceeds lives = {self.lives}")
         if self.mind.networks is not None:
-            problems.append("mind.networks: a study has no networks; give [teacher], who learns")
+            problems.append("mind.networks: a study has no networks; say in [teacher] who learns")
+        try:
+            self.mind.model_dump_json()
+        except PydanticSerializationError:
+            problems.append("mind has a function of your own: give it as FILE.py:NAME in a study")
         if problems:
             raise ValueError("\n".join(problems))
         return self
 
+    def varied(self) -> dict[str, Any]:
+        """Return the settings that cases may differ in, those that are given, as TOML has them."""
+        return self.model_dump(
+            mode="json",
+            include=set(CaseSettings.model_fields),
+            exclude_unset=True,
+            exclude_none=True,
+        )
+
     def to_toml(self) -> str:
-        """Return the study as a file that reads back as the same study, every default written."""
-        data = self.model_dump(mode="json", exclude_none=True)
-        # What a world leaves out it has from the world that its layout names.
+        """Return a file that reads back as this study, with the defaults of all settings in it."""
+        data = self.model_dump(mode="json", exclude_none=True, exclude={"design"})
+        # What a world leaves out it may have from the world that its layout names.
         data["world"] = self.world.model_dump(mode="json", exclude_unset=True)
         if self.teacher is not None:
             data["teacher"]["world"] = self.teacher.world.model_dump(
                 mode="json", exclude_unset=True
             )
-        design = self.design.to_toml()
-        del data["design"]
-        first = {"name": data.pop("name")}
-        rest = {key: value for key, value in data.items() if value != {}}
-        return tomli_w.dumps(first | rest) + design
+        return tomli_w.dumps({"name": self.name} | data) + self.design.to_toml()
 
 
 def read_study(path: Path | str, overrides: Sequence[str] = ()) -> Study:
     """Return the study of a file, changed by `overrides`, each "key=value".
 
-    Raises:
-        SettingsError: with a line for every mistake in file, overrides and design.
+    The value is TOML, or a bare word, which is taken for a string. Raises SettingsError, with a
+    line for every mistake in the file, in the overrides and in the design.
     """
-    from animat.study.design import cases
-
     data = parse_toml(path)
-    problems: list[str] = []
-    for text in overrides:
-        try:
-            key, value = _override(text)
-            put(data, Study, key, value)
-        except UnknownKeyError as mistake:
-            problems.append(f"--set {plain(text)}: {mistake}")
+    overridden, problems = _override(data, overrides)
+    design = _design_of(data)
+    problems += [
+        f"--set {written(key)}: the design varies it; change the design"
+        for key in overridden
+        if any(_overlap(key, varied) for varied in varied_keys(design))
+    ]
     try:
         study = validated(data, Study)
         cases(study)
     except ValidationError as error:
-        problems += explain(error, Study, str(path)).problems
+        base = {root: data[root] for root in VARIES if isinstance(data.get(root), dict)}
+        found = [line for one in design_mistakes(design, base) for line in one.lines()]
+        lines = told([*mistakes(error, Study), *found])
     except SettingsError as error:
-        problems += [f"{path}: {line}" for line in error.problems]
-    if problems:
-        raise SettingsError(*problems)
-    return study
+        lines = list(error.problems)
+    else:
+        if not problems:
+            return study
+        lines = []
+    raise SettingsError(
+        *problems, *(f"{_led_by(line, overridden, path)}: {line}" for line in lines)
+    )
 
 
-def _override(text: str) -> tuple[tuple[str, ...], Any]:
-    """Return key and value of "key=value"; the value is TOML, or a bare word for a string."""
-    name, equals, value = text.partition("=")
+def _override(data: dict[str, Any], overrides: Sequence[str]) -> tuple[list[Key], list[str]]:
+    """Change what a study file says; return the keys changed, and what could not be."""
+    _spell_out(data)
+    changed: list[Key] = []
+    problems: list[str] = []
+    for text in overrides:
+        try:
+            key, value = _key_and_value(text)
+            put(data, Study, key, value)
+            _spell_out(data)
+            changed.append(key)
+        except UnknownKeyError as error:
+            problems.append(f"--set {plain(text)}: {error}")
+    return changed, problems
+
+
+def _key_and_value(text: str) -> tuple[Key, Any]:
+    """Return key and value of "key=value". Raises UnknownKeyError for what is not so."""
+    name, equals, value = (part.strip() for part in text.partition("="))
     if not equals:
-        raise UnknownKeyError("is not key=value")
-    key = read_key(name.strip())
+        raise UnknownKeyError("is not written key=value")
+    key = read_key(name)
     try:
-        parsed = tomllib.loads(f"value = {value.strip()}\n")
-    except ValueError:
-        if re.fullmatch(r"[^\s\"'\[\]{}#=,]+", value.strip()):
-            return key, value.strip()
-        raise UnknownKeyError("its value is neither TOML nor a bare word") from None
-    if list(parsed) != ["value"]:
-        raise UnknownKeyError("is more than one key=value")
-    return key, json.loads(json.dumps(parsed["value"], default=str))
+        given = parse_text(f"value = {value}\n", "")
+    except SettingsError:
+        given = {}
+    if list(given) == ["value"]:
+        return key, given["value"]
+    if re.fullmatch(r"[^\s\"'\[\]{}#=,]+", value) and value.isprintable():
+        return key, value
+    raise UnknownKeyError("its value is neither TOML nor a bare word")
+
+
+def _spell_out(data: dict[str, Any]) -> None:
+    """Write the world of the teacher as a table, where it is given by its name."""
+    teacher = data.get("teacher")
+    if isinstance(teacher, dict) and isinstance(teacher.get("world"), str):
+        teacher["world"] = {"layout": teacher["world"]}
+
+
+def _design_of(data: dict[str, Any]) -> Design:
+    """Return the design of a study, of one with mistakes what of it is written like a design."""
+    parts = data.get("design")
+    parts = dict(parts) if isinstance(parts, dict) else {}
+    if isinstance(grid := parts.get("grid"), dict):
+        parts["grid"] = {name: each for name, each in grid.items() if _suits("grid", {name: each})}
+    return validated({name: each for name, each in parts.items() if _suits(name, each)}, Design)
+
+
+def _suits(name: str, part: Any) -> bool:
+    """Tell whether a part of a design is written like one."""
+    try:
+        validated({name: part}, Design)
+    except ValidationError:
+        return False
+    return True
+
+
+def _led_by(line: str, overridden: Sequence[Key], path: Path | str) -> str:
+    """Return where a mistake was made: on the command line or in the file."""
+    for key in overridden:
+        if re.match(re.escape(f"key {written(key)}") + r"(?![\w-])", line):
+            return "--set"
+    return str(path)
+
+
+def _overlap(one: Key, other: Key) -> bool:
+    shorter = min(len(one), len(other))
+    return one[:shorter] == other[:shorter]
