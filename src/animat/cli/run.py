@@ -74,8 +74,8 @@ def _say_how_it_ended(outcome: Outcome, directory: Path) -> int:
     total = outcome.tally.numbering["lives"].total
     if not outcome.complete:
         print(
-            f"animat: interrupted; {lives.rows:,} of {total:,} lives are in {directory}, and the"
-            " same command goes on with the others",
+            f"animat: {lives.rows:,} of {total:,} lives are in {directory}; the same command goes"
+            " on with the others",
             file=sys.stderr,
         )
         return INTERRUPTED

@@ -3,6 +3,7 @@
     study = animat.study.read_study("lifespan.toml")
     for case in animat.study.cases(study):
         print(case.number, case.factors)
+    results = animat.study.open("results/lifespan")
 
 Everything public is named here and loaded when it is first used.
 """
@@ -14,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from animat.study.design import Case, Design, Excluded, cases, excluded
-    from animat.study.results import Results, open  # noqa: A004
+    from animat.study.results import Results
+    from animat.study.results import open as open  # noqa: A004
     from animat.study.settings import CaseSettings, LifeSettings, Teacher, WorldChoice
     from animat.study.shipped import shipped, study_file
     from animat.study.study import Study, read_study

@@ -122,10 +122,11 @@ class Company:
                 if errors[n] is None:
                     own = None if weights is None else weights[n : n + 1]
                     errors[n] = self._since_when(lives[n : n + 1], own, before, until)
-                    states["dead"][n] = True
+                    states["dead"][n] = True  # so that it does not go on
             if curve is not None:
                 _note_episodes(curve, acts, states, likelihoods(self.setting, states))
             before = until
+        states["dead"] &= [error is None for error in errors]
         return Watched(states, errors, curve, list(earlier))
 
     def _since_when(

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from threading import Event
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ from animat.life.engine import ENGINE
 from animat.life.life import Recording
 from animat.study.columns import joined, life_columns, long_table, rows, schema, teacher_columns
 from animat.study.living import EPISODES, Company, Watched
-from animat.study.numbering import Part, Piece
+from animat.study.numbering import Kind, Part, Piece
 from animat.study.plan import Plan, plan_of
 from animat.study.seal import sealed
 from animat.study.traces import Traced
@@ -56,25 +56,40 @@ def live_part(text: str, part: Part, networks: Networks, stop: Event | None = No
     set.
     """
     plan = plan_of(text)
-    if part.kind == "teachers":
-        lived = [_teach(plan, piece, stop) for piece in plan.pieces(part)]
-        tables = [_teacher_rows(plan, one) for one in lived]
-    else:
-        lived = [_live(plan, piece, networks, stop) for piece in plan.pieces(part)]
-        tables = [_life_rows(plan, one) for one in lived]
-    files = {}
-    for path in file_names(plan, part)[:-1]:
-        if path.startswith("curves/"):
-            files[path] = _curves(plan, part, lived)
-        else:
-            files[path] = _traces(plan, part, lived)
+    lived = live_pieces(plan, part.kind, plan.pieces(part), networks, stop)
+    identity = part_identity(plan, part)
     failed = sum(error is not None for one in lived for error in one.watched.errors)
     steps = sum(int(one.watched.states["step"].sum()) for one in lived)
-    content = sealed(
-        [joined(tables)], schema(plan, part.kind), part_identity(plan, part), steps, failed
-    )
-    files[file_names(plan, part)[-1]] = content
+    files = {}
+    for path in file_names(plan, part):
+        if path.startswith("curves/"):
+            curves = _curves(plan, part.kind, lived)
+            files[path] = sealed([curves], curves.schema, identity)
+        elif path.startswith("traces/"):
+            files[path] = sealed(*_traces(plan, lived), identity)
+        else:
+            table = table_of(plan, part.kind, lived)
+            files[path] = sealed([table], table.schema, identity, steps, failed)
     return Made(files, plan.numbering[part.kind].rows(part.number), steps, failed)
+
+
+def live_pieces(
+    plan: Plan,
+    kind: Kind,
+    pieces: Iterable[Piece],
+    networks: Networks,
+    stop: Event | None = None,
+) -> list[Lived]:
+    """Live the lives of some pieces. Raises StoppedError once `stop` is set."""
+    if kind == "teachers":
+        return [_teach(plan, piece, stop) for piece in pieces]
+    return [_live(plan, piece, networks, stop) for piece in pieces]
+
+
+def table_of(plan: Plan, kind: Kind, lived: Iterable[Lived]) -> pa.Table:
+    """Return what is told of lives, a row each."""
+    told = _teacher_rows if kind == "teachers" else _life_rows
+    return joined(told(plan, one) for one in lived)
 
 
 def classes_needed(plan: Plan, part: Part) -> list[int]:
@@ -125,7 +140,7 @@ def _live(plan: Plan, piece: Piece, networks: Networks, stop: Event | None) -> L
     case = plan.lived[piece.place]
     setting = plan.setting(piece.place)
     curve = "learning_curve" in plan.study.measures and setting.mind.nature.learns
-    recording = Recording.parse(plan.study.record.what) if plan.study.record else None
+    recording = _recording(plan)
     back = (recording.last or 0) if recording and _recorded(plan, piece) else 0
     company = Company(setting, case.seed, case.steps, curve, back, stop)
     lives = np.arange(case.first + piece.start, case.first + piece.stop, dtype=np.uint64)
@@ -183,7 +198,7 @@ def _recorded(plan: Plan, piece: Piece) -> int:
     return max(0, min(piece.stop, wanted) - piece.start)
 
 
-def _curves(plan: Plan, part: Part, lived: Iterable[Lived]) -> bytes:
+def _curves(plan: Plan, kind: Kind, lived: Iterable[Lived]) -> pa.Table:
     """Return what networks say of object types after each episode, of lives that learn."""
     tables = []
     for one in lived:
@@ -191,22 +206,21 @@ def _curves(plan: Plan, part: Part, lived: Iterable[Lived]) -> bytes:
             continue
         whole = np.array([error is None for error in one.watched.errors], bool)
         index = one.lives[whole].astype(np.int64)
-        name = {"lives": "life", "teachers": "robot"}[part.kind]
+        name = {"lives": "life", "teachers": "robot"}[kind]
         axes = {name: index, "episode": np.arange(EPISODES + 1)}
         table = long_table(one.company.setting, one.watched.curve[whole], axes)
-        if part.kind == "lives":
+        if kind == "lives":
             number = plan.lived[one.piece.place].number
             named = pa.field("case", pa.int64()), pa.array(np.full(table.num_rows, number))
         else:
             named = pa.field("identity", pa.string()), _identities(plan, one, table.num_rows)
         tables.append(table.add_column(0, *named))
-    table = joined(tables)
-    return sealed([table], table.schema, part_identity(plan, part))
+    return joined(tables)
 
 
-def _traces(plan: Plan, part: Part, lived: Iterable[Lived]) -> bytes:
-    assert plan.study.record is not None
-    recording = Recording.parse(plan.study.record.what)
+def _traces(plan: Plan, lived: Iterable[Lived]) -> tuple[Iterator[pa.Table], pa.Schema]:
+    """Return the traces of the lives that are recorded, and their columns."""
+    recording = _recording(plan)
     assert recording is not None
     traced = [
         Traced(
@@ -221,5 +235,8 @@ def _traces(plan: Plan, part: Part, lived: Iterable[Lived]) -> bytes:
         if _recorded(plan, one.piece)
     ]
     wanted = pa.unify_schemas([one.schema() for one in traced])
-    tables = (table for one in traced for table in one.tables(recording, wanted))
-    return sealed(tables, wanted, part_identity(plan, part))
+    return (table for one in traced for table in one.tables(recording, wanted)), wanted
+
+
+def _recording(plan: Plan) -> Recording | None:
+    return Recording.parse(plan.study.record.what) if plan.study.record else None

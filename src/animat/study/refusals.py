@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pydantic import ValidationError
@@ -68,7 +69,7 @@ def design_mistakes(design: Design, base: dict[str, Any]) -> list[Mistake]:
     if size(design) > MOST_CASES:
         line = f"makes {size(design):,} combinations; allowed are up to {MOST_CASES:,}"
         return [Mistake(("design",), "", line)]
-    given = list(given_values(design))
+    given = list(_given(design))
     found = [mistake for one in given for mistake in _value_mistakes(one, base)]
     return [*_own_names(design), *found, *_overlaps(given), *_rows(design), *_exclusions(design)]
 
@@ -104,8 +105,7 @@ def _factors(design: Design) -> Iterator[tuple[Place, str, Any]]:
             yield ("design", "sample", "over", name), name, levels
 
 
-def given_values(design: Design) -> Iterator[Given]:
-    """Yield every value of a setting that a design gives."""
+def _given(design: Design) -> Iterator[Given]:
     for place, name, levels in _factors(design):
         if isinstance(levels, Range):
             for end in ("low", "high"):
@@ -122,6 +122,15 @@ def given_values(design: Design) -> Iterator[Given]:
         for key, value in row.items():
             at = ("design", "cases", number, key)
             yield Given(("design", "cases"), at, at, key, value)
+
+
+def varied_keys(design: Design) -> set[Key]:
+    """Return the keys of the settings that a design sets, those that are keys."""
+    keys = set()
+    for given in _given(design):
+        with suppress(UnknownKeyError):
+            keys.add(read_key(given.key))
+    return keys
 
 
 def _own_names(design: Design) -> Iterator[Mistake]:

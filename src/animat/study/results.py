@@ -84,6 +84,11 @@ class Results:
         """How lives, and robots that teach, are numbered and cut into parts."""
         return {kind: Numbering.read(self.manifest[kind]) for kind in KINDS}
 
+    @property
+    def steps_to_learn(self) -> int:
+        """The steps that all robots that teach live together."""
+        return self.manifest["steps_to_learn"]
+
     def tally(self) -> Tally:
         """Return how much is finished, with steps and failures; reads a little of every part."""
         same = self.cases["same_as"].to_numpy()

@@ -14,12 +14,10 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
@@ -35,7 +33,7 @@ from animat.study.parts import Made, file_names, part_identity
 from animat.study.plan import Plan
 from animat.study.provenance import provenance
 from animat.study.seal import Seal, seal_of
-from animat.study.teachers import networks_of
+from animat.study.teachers import read_networks
 
 STUDY, MANIFEST, CASES = "study.toml", "manifest.json", "cases.parquet"
 LOCK, LOG, INPUTS = "lock", "log.jsonl", "inputs"
@@ -43,9 +41,6 @@ COLUMNS = "_common_metadata"
 """The file that tells the columns of parts before there is any; Parquet's own name for it."""
 
 FOLDERS = ("lives", "teachers", "curves", "traces", INPUTS)
-
-NETWORKS_KEPT = 64
-"""Classes of teachers whose networks are kept in memory."""
 
 
 class StoreError(RuntimeError):
@@ -97,7 +92,7 @@ class Store:
 
     def networks(self, place: int) -> NDArray[np.float64]:
         """Return the weights [robots, B, W] of a class of teachers; NaN of robots that failed."""
-        return _networks(self.directory, self.plan, place)
+        return read_networks(self.directory, self.plan, place)
 
 
 @contextmanager
@@ -166,9 +161,10 @@ def _begin(directory: Path, plan: Plan) -> None:
         _describe(directory, plan)
         manifest = {
             "study": plan.study.name,
-            "hash": hashlib.sha256(plan.text.encode()).hexdigest(),
+            "hash": text_hash(plan.text),
             "engine": ENGINE,
             **{kind: plan.numbering[kind].written() for kind in KINDS},
+            "steps_to_learn": plan.steps_to_learn,
             "inputs": _inputs(plan),
             "runs": [],
         }
@@ -259,8 +255,6 @@ def _kept(path: Path) -> Iterator[None]:
         ) from None
 
 
-@lru_cache(maxsize=NETWORKS_KEPT)
-def _networks(directory: Path, plan: Plan, place: int) -> NDArray[np.float64]:
-    files = [directory / part.file for part in plan.parts_of_class(place)]
-    table = pa.concat_tables(pq.read_table(file) for file in files)
-    return networks_of(plan, place, table)
+def text_hash(text: str) -> str:
+    """Return the hash by which a study is known."""
+    return hashlib.sha256(text.encode()).hexdigest()

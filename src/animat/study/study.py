@@ -21,7 +21,7 @@ from animat.settings import Settings, SettingsError, parse_text, parse_toml, val
 from animat.study.design import Design, cases
 from animat.study.factors import each_once
 from animat.study.keys import Key, UnknownKeyError, put, read_key
-from animat.study.refusals import design_mistakes, given_values
+from animat.study.refusals import VARIES, design_mistakes, varied_keys
 from animat.study.settings import CaseSettings, Teacher
 from animat.study.shipped import LONGEST_NAME, is_name
 from animat.study.telling import told
@@ -117,22 +117,28 @@ def read_study(path: Path | str, overrides: Sequence[str] = ()) -> Study:
     """
     data = parse_toml(path)
     overridden, problems = _override(data, overrides)
+    design = _design_of(data)
+    problems += [
+        f"--set {written(key)}: the design varies it; change the design"
+        for key in overridden
+        if any(_overlap(key, varied) for varied in varied_keys(design))
+    ]
     try:
         study = validated(data, Study)
         cases(study)
-        problems += [
-            f"--set {written(key)}: the design varies it; change the design"
-            for key in overridden
-            if any(_overlap(key, read_key(given.key)) for given in given_values(study.design))
-        ]
     except ValidationError as error:
-        lines = told([*mistakes(error, Study), *_design_lines(data)])
-        problems += [f"{_led_by(line, overridden, path)}: {line}" for line in lines]
+        base = {root: data[root] for root in VARIES if isinstance(data.get(root), dict)}
+        found = [line for one in design_mistakes(design, base) for line in one.lines()]
+        lines = told([*mistakes(error, Study), *found])
     except SettingsError as error:
-        problems += [f"{_led_by(line, overridden, path)}: {line}" for line in error.problems]
-    if problems:
-        raise SettingsError(*problems)
-    return study
+        lines = list(error.problems)
+    else:
+        if not problems:
+            return study
+        lines = []
+    raise SettingsError(
+        *problems, *(f"{_led_by(line, overridden, path)}: {line}" for line in lines)
+    )
 
 
 def _override(data: dict[str, Any], overrides: Sequence[str]) -> tuple[list[Key], list[str]]:
@@ -175,17 +181,13 @@ def _spell_out(data: dict[str, Any]) -> None:
         teacher["world"] = {"layout": teacher["world"]}
 
 
-def _design_lines(data: dict[str, Any]) -> list[str]:
-    """Return what is wrong with the design of a study that has mistakes elsewhere as well."""
+def _design_of(data: dict[str, Any]) -> Design:
+    """Return the design of a study, of one with mistakes what of it is written like a design."""
     parts = data.get("design")
     parts = dict(parts) if isinstance(parts, dict) else {}
     if isinstance(grid := parts.get("grid"), dict):
         parts["grid"] = {name: each for name, each in grid.items() if _suits("grid", {name: each})}
-    design = validated({name: each for name, each in parts.items() if _suits(name, each)}, Design)
-    base = {
-        root: data[root] for root in CaseSettings.model_fields if isinstance(data.get(root), dict)
-    }
-    return [line for mistake in design_mistakes(design, base) for line in mistake.lines()]
+    return validated({name: each for name, each in parts.items() if _suits(name, each)}, Design)
 
 
 def _suits(name: str, part: Any) -> bool:

@@ -2,12 +2,29 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+from pathlib import Path
+
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
+import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from animat.study.plan import Plan, world_of
+
+KEPT = 64
+"""Classes whose networks are kept in memory."""
+
+
+@lru_cache(maxsize=KEPT)
+def read_networks(directory: Path, plan: Plan, place: int) -> NDArray[np.float64]:
+    """Return the weights [robots, B, W] of a class, all of whose parts are finished.
+
+    They are NaN for robots that failed.
+    """
+    files = [directory / part.file for part in plan.parts_of_class(place)]
+    return networks_of(plan, place, pa.concat_tables(pq.read_table(file) for file in files))
 
 
 def networks_of(plan: Plan, place: int, table: pa.Table) -> NDArray[np.float64]:
