@@ -3,6 +3,7 @@
     study = animat.study.read_study("lifespan.toml")
     for case in animat.study.cases(study):
         print(case.number, case.factors)
+    results = animat.study.open("results/lifespan")
 
 Everything public is named here and loaded when it is first used.
 """
@@ -14,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from animat.study.design import Case, Design, Excluded, cases, excluded
+    from animat.study.results import Results
+    from animat.study.results import open as open  # noqa: A004
     from animat.study.settings import CaseSettings, LifeSettings, Teacher, WorldChoice
     from animat.study.shipped import shipped, study_file
     from animat.study.study import Study, read_study
@@ -24,11 +27,13 @@ _HOMES = {
     "Design": "animat.study.design",
     "Excluded": "animat.study.design",
     "LifeSettings": "animat.study.settings",
+    "Results": "animat.study.results",
     "Study": "animat.study.study",
     "Teacher": "animat.study.settings",
     "WorldChoice": "animat.study.settings",
     "cases": "animat.study.design",
     "excluded": "animat.study.design",
+    "open": "animat.study.results",
     "read_study": "animat.study.study",
     "shipped": "animat.study.shipped",
     "study_file": "animat.study.shipped",
@@ -40,11 +45,13 @@ __all__ = [
     "Design",
     "Excluded",
     "LifeSettings",
+    "Results",
     "Study",
     "Teacher",
     "WorldChoice",
     "cases",
     "excluded",
+    "open",
     "read_study",
     "shipped",
     "study_file",

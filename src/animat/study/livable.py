@@ -49,7 +49,7 @@ def _problems(case: Case, worlds: dict[int, World | SettingsError]) -> tuple[str
         if case.teacher is not None:
             school = _world(case.teacher.world, worlds)
             bring_together(mind.model_copy(update={"agent": "LEARNING"}), school, settings.robot)
-            mind = mind.model_copy(update={"networks": _untaught(mind, school)})
+            mind = mind.model_copy(update={"networks": untaught(mind, school)})
         setting = bring_together(mind, world, settings.robot)
         setting.begin(case.seed, np.array([case.first], np.uint64))
     except SettingsError as error:
@@ -72,7 +72,7 @@ def _world(choice: WorldChoice, worlds: dict[int, World | SettingsError]) -> Wor
     return world
 
 
-def _untaught(mind: Mind, world: World) -> Networks:
+def untaught(mind: Mind, world: World) -> Networks:
     """Return networks of the shape that a robot with this mind learns in this world."""
     shape = len(mind.behaviours), mind.weight_count(len(world.feature_names))
     hidden = mind.learning.hidden_units
