@@ -180,6 +180,14 @@ def test_every_mistake_is_told_at_once():
     assert len(lines) == 5
 
 
+def test_what_only_a_lost_rule_lets_in_is_not_told():
+    (line,) = refused(
+        '[design.grid]\n"mind.agnt" = ["x"]\n"mind.agent" = ["AF", "BLIND"]\n'
+        '[[design.exclude]]\nwhen = { "mind.agent" = "AF", "mind.agnt" = "x" }\nwhy = "so"'
+    )
+    assert "unknown key" in line
+
+
 def test_of_very_many_mistakes_the_first_are_told():
     values = ", ".join(f'"A{number}"' for number in range(1_000))
     lines = refused(f'[design.grid]\n"mind.agent" = [{values}]')
