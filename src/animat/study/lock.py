@@ -13,7 +13,7 @@ import os
 import socket
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
@@ -62,7 +62,8 @@ def hold(lock: Path) -> Iterator[Holder | None]:
         try:
             yield dead
         finally:
-            _say(file, "")
+            with suppress(OSError):
+                os.ftruncate(file, 0)
     finally:
         os.close(file)
 

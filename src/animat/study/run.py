@@ -43,8 +43,8 @@ class Outcome(NamedTuple):
 
     @property
     def complete(self) -> bool:
-        """Whether all lives are finished."""
-        return self.tally.counts["lives"].rows == self.tally.numbering["lives"].total
+        """Whether nothing is left to live."""
+        return self.tally.complete
 
 
 class Workers(NamedTuple):
