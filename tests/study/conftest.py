@@ -30,11 +30,11 @@ def published(tmp_path_factory: pytest.TempPathFactory) -> Published:
     directory = tmp_path_factory.mktemp("reproduction")
     told: Told = []
 
-    def tell(task: str, done: int, total: int) -> None:
+    def tell(task: str, done: int, total: int, note: str = "") -> None:
         told.append((task, done, total))
 
     size = Size(robots=4, lives=24, steps=3_000)
-    result = reproduce(LifeSettings(), seed=1, size=size, tell=tell)
+    result = reproduce(LifeSettings(), seed=1, size=size, directory=directory, tell=tell)
     publish(result, directory, lambda: tell("Pages", 1, 8))
     return Published(result, directory, told)
 

@@ -279,9 +279,19 @@ def where_nothing_may_be_written(folder: Path) -> dict[str, Any]:
     }
 
 
+def go_on(study: Plan, directory: Path) -> None:
+    """Live what a directory lacks of a study."""
+    assert lived(study, directory) == DONE
+
+
+def planned(study: Study) -> Plan:
+    """The plan of a study."""
+    return plan_of(study.to_toml())
+
+
 def plan(text: str) -> Plan:
     """The plan of the study that a text describes."""
-    return plan_of(Study.model_validate_json(json.dumps(tomllib.loads(text))).to_toml())
+    return planned(Study.model_validate_json(json.dumps(tomllib.loads(text))))
 
 
 def _undisturbed(study: Plan, folder: Path) -> dict[str, str]:

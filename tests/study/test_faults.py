@@ -19,8 +19,6 @@ from typing import Any
 import pytest
 
 from animat.study import lock, log, provenance
-from animat.study.plan import Plan
-from animat.study.run import run, threads
 from animat.study.status import status
 
 KILLED = -9
@@ -94,17 +92,12 @@ def test_a_torn_file_is_lived_again(file, faults, small, finished, tmp_path):
     whole = path.read_bytes()
     for length in lengths(len(whole)):
         path.write_bytes(whole[:length])
-        go_on(small, directory)
+        faults.go_on(small, directory)
         assert path.read_bytes() == whole
     path.unlink()
-    go_on(small, directory)
+    faults.go_on(small, directory)
     assert faults.told_of(directory) == faults.told_of(finished)
     assert '"event": "torn"' in (directory / "log.jsonl").read_text()
-
-
-def go_on(plan: Plan, directory: Path) -> None:
-    with threads(2) as workers:
-        assert run(plan, directory, workers, lambda *_, **__: None).complete
 
 
 def test_a_clock_that_goes_back_changes_nothing(faults, small, finished, tmp_path, monkeypatch):
@@ -119,10 +112,10 @@ def test_a_clock_that_goes_back_changes_nothing(faults, small, finished, tmp_pat
         monkeypatch.setattr(module, "datetime", Backwards)
     monkeypatch.setattr(time, "time", lambda: 1e9 + 3600.0 * next(hours))
     directory = tmp_path / "results"
-    go_on(small, directory)
+    faults.go_on(small, directory)
     (directory / "lives" / "part-000000.parquet").unlink()
     assert status(_results(directory))[0] == "small: 8 of 16 lives, 1 of 2 cases"
-    go_on(small, directory)
+    faults.go_on(small, directory)
     assert faults.told_of(directory) == faults.told_of(finished)
     assert status(_results(directory))[-1] == "finished"
     assert next(hours) < 10_000 - 10

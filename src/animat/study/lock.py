@@ -39,7 +39,11 @@ class Holder(NamedTuple):
         return f"process {self.pid} on {self.host}, since {self.since}"
 
 
-class HeldError(RuntimeError):
+class RunError(RuntimeError):
+    """Something that stops a run and is no mistake of its user; `str` says in a line what."""
+
+
+class HeldError(RunError):
     """Another process holds the directory; `str` says who."""
 
 
