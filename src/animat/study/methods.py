@@ -87,8 +87,8 @@ def _worlds(choices: Sequence[WorldChoice]) -> str:
 
 
 def _world(world: World) -> str:
-    names = [world.types[k].name for k in world.layout.site_types()[: world.n_objects]]
-    counts = ", ".join(f"{names.count(name)} {name}" for name in dict.fromkeys(names))
+    types = [one.type for one in world.layout.placements]
+    counts = ", ".join(f"{types.count(name)} {name}" for name in dict.fromkeys(types))
     arena = world.arena
     size = f"{word(arena.width)} by {word(arena.height)} mm"
     return f'the world "{world.name}" ({size}; objects: {counts or "none"})'
