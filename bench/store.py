@@ -25,7 +25,7 @@ from animat.life import lives as engine
 from animat.life.lives import live_chunks
 from animat.life.setting import bring_together
 from animat.study.numbering import LARGEST
-from animat.study.plan import Plan
+from animat.study.plan import plan_of
 from animat.study.provenance import provenance
 from animat.study.run import run, threads
 from animat.study.settings import LifeSettings
@@ -42,7 +42,7 @@ def study_of(lives: int, steps: int) -> Study:
 def through_the_store(lives: int, steps: int, count: int) -> None:
     """Live a study into a directory that is then thrown away."""
     with tempfile.TemporaryDirectory() as folder, threads(count) as workers:
-        plan = Plan(study_of(lives, steps))
+        plan = plan_of(study_of(lives, steps).to_toml())
         outcome = run(plan, Path(folder) / "results", workers, lambda *_, **__: None)
         assert outcome.complete
 

@@ -77,7 +77,7 @@ class Mistake(NamedTuple):
     def lines(self) -> list[str]:
         """Return a line for each mistake that a validator of ours reported together."""
         name = f"key {written(self.key)}{self.value}: " if self.key else ""
-        return [name + line for line in self.message.splitlines()]
+        return [name + line for line in self.message.split("\n")]
 
 
 def _found(detail: ErrorDetails, model: type[BaseModel]) -> Mistake:
@@ -205,6 +205,11 @@ def plain(value: Any) -> str:
         text = json.dumps(value, ensure_ascii=False)
     else:
         text = " ".join(str(value).split())
+    return printable(text)
+
+
+def printable(text: str) -> str:
+    """Return a text with escapes for what cannot be printed, or would move a terminal's cursor."""
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 

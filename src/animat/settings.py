@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from animat.mistakes import mistakes, nearest, written
+from animat.mistakes import mistakes, nearest, printable, written
 
 __all__ = [
     "Settings",
@@ -26,6 +26,7 @@ __all__ = [
     "parse_toml",
     "read_toml",
     "validated",
+    "values_within",
 ]
 
 LARGEST_FILE = 1_000_000
@@ -33,6 +34,8 @@ LARGEST_FILE = 1_000_000
 
 DEEPEST = 32
 """Tables and lists inside one another; no settings come near it."""
+
+Key = tuple[str | int, ...]
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -51,8 +54,8 @@ class SettingsError(ValueError):
 
     def __init__(self, *problems: str) -> None:
         """Keep the problems, one line each."""
-        self.problems = problems
-        super().__init__(*problems)
+        self.problems = tuple(printable(problem) for problem in problems)
+        super().__init__(*self.problems)
 
     def __str__(self) -> str:
         """Return the problems, one line each."""
@@ -95,12 +98,20 @@ def parse_text(text: str, where: str) -> dict[str, Any]:
         raise SettingsError(f"{where}: is nested too deeply: more than {DEEPEST} levels")
     dates = [
         f"{where}: key {written(key)} = {value}: is a date or a time; put text in quotes"
-        for key, value in _leaves(data, ())
+        for key, value in values_within(data)
         if isinstance(value, date | time)
     ]
     if dates:
         raise SettingsError(*dates)
     return data
+
+
+def values_within(value: Any, key: Key = ()) -> Iterator[tuple[Key, Any]]:
+    """Yield what is in a table or a list, also in inner ones, each with its key."""
+    if isinstance(value, dict | list):
+        for part, inner in value.items() if isinstance(value, dict) else enumerate(value):
+            yield (*key, part), inner
+            yield from values_within(inner, (*key, part))
 
 
 def validated(data: dict[str, Any], model: type[Model]) -> Model:
@@ -143,15 +154,6 @@ def _parsed(text: str, path: str) -> dict[str, Any]:
         raise SettingsError(f"{path}: is not TOML: {what}") from None
     except ValueError:
         raise SettingsError(f"{path}: has a whole number of too many digits") from None
-
-
-def _leaves(value: Any, key: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], Any]]:
-    """Yield all values that are no tables or lists, each with its key."""
-    if isinstance(value, dict | list):
-        for part, inner in value.items() if isinstance(value, dict) else enumerate(value):
-            yield from _leaves(inner, (*key, part))
-    else:
-        yield key, value
 
 
 def _is_deeper_than(data: dict[str, Any], levels: int) -> bool:

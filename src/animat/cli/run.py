@@ -38,14 +38,14 @@ def run(
     """Live the lives of a study, or those that its results directory still lacks."""
     from animat.progress import telling
     from animat.study.lock import HeldError
-    from animat.study.plan import Plan
+    from animat.study.plan import plan_of
     from animat.study.run import run as live
     from animat.study.run import threads as workers_of
     from animat.study.shipped import study_file
     from animat.study.store import StoreError
     from animat.study.study import read_study
 
-    plan = Plan(read_study(study_file(study), set_ or ()))
+    plan = plan_of(read_study(study_file(study), set_ or ()).to_toml())
     directory = out or Path("results") / plan.study.name
     _say_what(plan, directory)
     try:

@@ -26,6 +26,12 @@ def _one_value(value: Any) -> Any:
     return value
 
 
+def _one_number(value: Any) -> Any:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError("must be a number")
+    return _one_value(value)
+
+
 Scalar = bool | int | float | str
 Value = Annotated[Scalar, BeforeValidator(_one_value)]
 
@@ -55,8 +61,8 @@ Levels = Annotated[dict[str, dict[str, Any]], Field(min_length=1)]
 class Range(Settings):
     """Numbers from `low` to `high`, spread evenly over them or over their logarithms."""
 
-    low: int | float
-    high: int | float
+    low: Annotated[int | float, BeforeValidator(_one_number)]
+    high: Annotated[int | float, BeforeValidator(_one_number)]
     scale: Literal["linear", "log"] = "linear"
 
     @model_validator(mode="after")

@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -77,8 +78,8 @@ def _parts(lived: Lived, traced: bool) -> Iterator[bytes]:
     unread |= {"likelihood_threshold"} if record.judge == ACCEPT_ALL else set()
     yield json.dumps([ENGINE, lived.seed, lived.steps]).encode()
     yield from _fields(record, unread)
-    yield from _fields(lived.robot.parameters(), set())
-    yield json.dumps(world_content(world.name, world.layout, world.resolution)).encode()
+    yield _told_of_robot(lived.robot)
+    yield _told_of_world(world)
     names = [mind.agent, *mind.resolved_variables(), *mind.drives, *mind.behaviours]
     yield json.dumps(names).encode()
     for role, built_in in BUILT_IN._asdict().items():
@@ -95,6 +96,16 @@ def _parts(lived: Lived, traced: bool) -> Iterator[bytes]:
     if networks:
         untaught = [bool(mind.learning.biases), mind.learning.hidden_units]
         yield lived.taught.encode() if lived.taught else json.dumps(untaught).encode()
+
+
+@lru_cache(maxsize=64)
+def _told_of_robot(robot: Khepera) -> bytes:
+    return b" ".join(_fields(robot.parameters(), set()))
+
+
+@lru_cache(maxsize=64)
+def _told_of_world(world: World) -> bytes:
+    return json.dumps(world_content(world.name, world.layout, world.resolution)).encode()
 
 
 def _fields(record: np.record, unread: set[str]) -> Iterator[bytes]:

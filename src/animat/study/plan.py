@@ -25,8 +25,9 @@ from animat.settings import SettingsError, validated
 from animat.study.design import Case, cases
 from animat.study.identity import Lived, identity
 from animat.study.numbering import KINDS, Kind, Numbering, Part, Piece, part_size
-from animat.study.settings import WorldChoice
-from animat.study.study import Study, Teacher
+from animat.study.settings import Teacher, WorldChoice
+from animat.study.study import Study
+from animat.study.telling import InCases, told
 from animat.world.world import World
 
 LIFE_STEPS = 30_000_000
@@ -110,7 +111,8 @@ class Plan:
         case = self.lived[place]
         mind, world = case.settings.mind, world_of(case.settings.world)
         if case.teacher is not None:
-            mind = _with_room(mind, world_of(case.teacher.world))
+            school = world_of(case.teacher.world)
+            mind = mind.model_copy(update={"networks": untaught(mind, school)})
         return bring_together(mind, world, case.settings.robot, self._functions_of(mind))
 
     def setting_of_class(self, place: int) -> Setting:
@@ -131,18 +133,21 @@ class Plan:
     def _number_all(self) -> None:
         first: dict[str, int] = {}
         places: dict[str, int] = {}
-        problems: list[str] = []
+        refused: dict[str, InCases] = {}
         for case in self.cases:
             self.inputs.update(_world_files(case))
             try:
                 own = self._identity(case, places)
             except SettingsError as error:
-                problems += [f"{_told(case)}{line}" for line in error.problems]
+                for line in error.problems:
+                    before = refused.get(line, InCases(0, case.factors, case.factors))
+                    refused[line] = before.and_in(case.factors)
                 own = ""
             self.identities.append(own)
             self.same_as.append(first.setdefault(own, case.number))
-        if problems:
-            raise SettingsError(*dict.fromkeys(problems))
+        if refused:
+            all_ = len(self.cases)
+            raise SettingsError(*told(one.told(line, all_) for line, one in refused.items()))
 
     def _identity(self, case: Case, places: dict[str, int]) -> str:
         mind, robot = case.settings.mind, case.settings.robot
@@ -161,7 +166,7 @@ class Plan:
                 self.classes[place] = self.classes[place]._replace(robots=robots)
             self._class_of[case.number] = place
             taught = f"{who} {robots}"
-            mind = _with_room(mind, school)
+            mind = mind.model_copy(update={"networks": untaught(mind, school)})
         functions = self._functions_of(mind)
         world = world_of(case.settings.world)
         lived = Lived(mind, world, robot, functions, case.seed, case.steps, taught)
@@ -203,19 +208,11 @@ def _world_files(case: Case) -> list[str]:
     return [choice.layout for choice in choices if choice.layout.endswith(".toml")]
 
 
-def _with_room(mind: Mind, school: World) -> Mind:
-    """Return a mind with networks of the right form, in the place of those its robots learn."""
-    shape = (len(mind.behaviours), mind.weight_count(len(school.feature_names)))
-    networks = Networks(
-        tuple(mind.behaviours), school.feature_names, mind.learning.hidden_units, np.zeros(shape)
-    )
-    return mind.model_copy(update={"networks": networks})
-
-
-def _told(case: Case) -> str:
-    """Return the case a mistake is of, to stand before it."""
-    told = ", ".join(f"{name} = {value}" for name, value in case.factors.items())
-    return f"case {case.number} ({told}): " if told else ""
+def untaught(mind: Mind, school: World) -> Networks:
+    """Return networks of the form that robots with this mind learn in this world."""
+    shape = len(mind.behaviours), mind.weight_count(len(school.feature_names))
+    hidden = mind.learning.hidden_units
+    return Networks(tuple(mind.behaviours), school.feature_names, hidden, np.zeros(shape))
 
 
 def _alike(values: list[Any]) -> pa.Array:

@@ -79,19 +79,21 @@ def without(design: Design, found: Iterable[Mistake]) -> Design | None:
 
     What is left shows whether there is more to tell.
     """
-    bad = {mistake.key[1:length] for mistake in found for length in (2, 3, 4)}
-    rows = [row for number, row in enumerate(design.cases) if ("cases", number) not in bad]
+    bad = {mistake.key[1:4] for mistake in found}
+    bad_rows = {key[1] for key in bad if key[:1] == ("cases",)}
+    rows = [row for number, row in enumerate(design.cases) if number not in bad_rows]
     grid: dict[str, Any] = {}
     for name, levels in design.grid.items():
         if isinstance(levels, dict):
             good = {level: c for level, c in levels.items() if ("grid", name, level) not in bad}
         else:
             good = [value for n, value in enumerate(levels) if ("grid", name, n) not in bad]
-        if good and ("grid", name) not in bad:
+        if ("grid", name) not in bad:
             grid[name] = good
     elsewhere = any(key[:1] not in {("grid",), ("cases",)} for key in bad)
-    factor_lost = len(grid) < len(design.grid) and design.exclude
-    if elsewhere or factor_lost or bool(rows) != bool(design.cases):
+    factor_lost = not all(grid.values()) or bool(rows) != bool(design.cases)
+    rule_lost = len(grid) < len(design.grid) and design.exclude
+    if elsewhere or factor_lost or rule_lost:
         return None
     return design.model_copy(update={"grid": grid, "cases": rows})
 
@@ -135,7 +137,7 @@ def varied_keys(design: Design) -> set[Key]:
 
 def _own_names(design: Design) -> Iterator[Mistake]:
     """Tell of factors with a name of one's own that cannot be called so."""
-    names = [name for _, name, _ in _factors(design)] + [key for row in design.cases for key in row]
+    seen: set[str] = set()
     for place, name, levels in _factors(design):
         if not isinstance(levels, dict):
             continue
@@ -145,9 +147,10 @@ def _own_names(design: Design) -> Iterator[Mistake]:
             line = "a factor with levels needs a name of your own, without a dot"
         elif name in COLUMNS:
             line = "is a column of the table of lives; give the factor another name"
-        elif names.count(name) > 1:
-            line = "two factors have this name"
+        elif name in seen:
+            line = "another factor has this name"
         else:
+            seen.add(name)
             continue
         yield Mistake(place, "", line)
 
@@ -162,7 +165,8 @@ def _value_mistakes(given: Given, base: dict[str, Any]) -> Iterator[Mistake]:
         yield Mistake(given.key_place, "", str(error))
         return
     annotation = annotation_of(CaseSettings, key)
-    if isinstance(given.value, dict) and is_model(table_of(annotation)):
+    holder = table_of(annotation_of(CaseSettings, key[:-1]))
+    if isinstance(given.value, dict) and is_model(holder) and is_model(table_of(annotation)):
         line = f'is a section; give its settings one by one, "{given.key}.KEY" = VALUE'
         yield Mistake(given.place, "", line)
         return

@@ -51,6 +51,16 @@ class _OfToml(GenerateJsonSchema):
             return self.generate_inner(schema["schema"])
         return super().default_schema(schema)
 
+    def encode_default(self, dft: Any) -> Any:
+        return _given(super().encode_default(dft))
+
+
+def _given(default: Any) -> Any:
+    """Return a default without what is left out in it."""
+    if isinstance(default, dict):
+        return {name: _given(value) for name, value in default.items() if value is not None}
+    return default
+
 
 def _settings(model: type[BaseModel], prefix: str, at: str) -> Iterator[tuple[str, str]]:
     """Yield the key of every setting that is one value, and where in the schema it stands."""

@@ -17,7 +17,14 @@ from pydantic_core import PydanticSerializationError
 from animat.life.life import Recording
 from animat.life.setting import LifeError
 from animat.mistakes import mistakes, plain, written
-from animat.settings import Settings, SettingsError, parse_text, parse_toml, validated
+from animat.settings import (
+    Settings,
+    SettingsError,
+    parse_text,
+    parse_toml,
+    validated,
+    values_within,
+)
 from animat.study.design import Design, cases
 from animat.study.factors import each_once
 from animat.study.keys import Key, UnknownKeyError, put, read_key
@@ -116,6 +123,9 @@ def read_study(path: Path | str, overrides: Sequence[str] = ()) -> Study:
     line for every mistake in the file, in the overrides and in the design.
     """
     data = parse_toml(path)
+    unshown = [written(key) for key, _ in values_within(data) if not str(key[-1]).isprintable()]
+    if unshown:
+        raise SettingsError(*(f"{path}: key {key}: cannot be printed" for key in told(unshown)))
     overridden, problems = _override(data, overrides)
     design = _design_of(data)
     problems += [
