@@ -5,11 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from animat.report.page import Section
+from animat.life.drawing import robot_drawing, world_drawing
+from animat.report.figures.worlds import worlds_figure
+from animat.report.page import Picture, Section, picture
 from animat.study.design import Case, excluded
 from animat.study.factors import Range
+from animat.study.plan import world_of
 from animat.study.study import Study
 from animat.study.words import LISTED_AT_MOST, listed, word, words
+
+WORLDS_AT_MOST = 3
 
 METHODS = {
     "sobol": "Sobol's sequence",
@@ -24,7 +29,23 @@ def asked_section(study: Study, cases: Sequence[Case]) -> Section:
         "What was asked",
         [_size(study, cases), _luck(study), *_teacher(cases), *_records(study)],
         items=[*_factors(study), *_left_out(study)],
+        pictures=_worlds(cases),
     )
+
+
+def _worlds(cases: Sequence[Case]) -> list[Picture]:
+    """Return the worlds drawn, where they are few."""
+    choices = {case.settings.world.model_dump_json(): case.settings.world for case in cases}
+    if len(choices) > WORLDS_AT_MOST:
+        return []
+    worlds = [world_of(choice) for choice in choices.values()]
+    fig = worlds_figure(
+        [world_drawing(world, world.name) for world in worlds],
+        robot_drawing(cases[0].settings.robot),
+    )
+    names = listed([f'"{world.name}"' for world in worlds])
+    words = f"The {'worlds' if len(worlds) > 1 else 'world'} {names}, to scale."
+    return [picture(fig, words, words)]
 
 
 def _size(study: Study, cases: Sequence[Case]) -> str:

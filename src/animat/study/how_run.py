@@ -21,7 +21,7 @@ def how_run_section(results: Results, failed: pa.Table) -> Section:
     return Section(
         "How it was run",
         terms={
-            "Lives": f"{done:,} of {total:,} finished",
+            "Lives": f"{done:,} of {total:,} finished{_shared(results)}",
             "Failed": f"{failed.num_rows:,}",
             "Study": f"{manifest['study']}, SHA-256 {manifest['hash']}",
             "Engine": str(manifest["engine"]),
@@ -47,6 +47,18 @@ def notices(results: Results, failed: pa.Table) -> list[str]:
             " stand under How it was run."
         )
     return told
+
+
+def _shared(results: Results) -> str:
+    """Return how many cases have the lives of another case, settings that matter being equal."""
+    same = results.cases["same_as"].to_numpy()
+    shared = int((same != results.cases["case"].to_numpy()).sum())
+    if not shared:
+        return ""
+    return (
+        f"; {shared:,} of {len(same):,} cases differ from another in nothing that matters to a"
+        " life, and have its lives"
+    )
 
 
 def _runs(runs: list[dict[str, Any]]) -> dict[str, str]:

@@ -87,8 +87,8 @@ def _worlds(choices: Sequence[WorldChoice]) -> str:
 
 
 def _world(world: World) -> str:
-    names = [world.types[k].name for k in world.layout.site_types()[: world.n_objects]]
-    counts = ", ".join(f"{names.count(name)} {name}" for name in dict.fromkeys(names))
+    types = [one.type for one in world.layout.placements]
+    counts = ", ".join(f"{types.count(name)} {name}" for name in dict.fromkeys(types))
     arena = world.arena
     size = f"{word(arena.width)} by {word(arena.height)} mm"
     return f'the world "{world.name}" ({size}; objects: {counts or "none"})'
@@ -166,9 +166,10 @@ def _networks(minds: Sequence[Mind]) -> list[str]:
     def of(read: Callable[[Mind], Any]) -> str:
         return words(map(read, knowing))
 
+    estimator = of(lambda m: str(m.learning.estimator).replace("_", " "))
     biases = words("with" if mind.learning.biases else "without" for mind in knowing)
     return [
-        f"Affordances: a network for each behaviour ({of(lambda m: str(m.learning.estimator))},"
+        f"Affordances: a network for each behaviour ({estimator},"
         f" {of(lambda m: m.learning.hidden_units)} hidden units, {biases} biases), trained by"
         f" {of(lambda m: str(m.learning.learner)).replace('_', '-')} at rate"
         f" {of(lambda m: m.learning.rate)} for {of(lambda m: m.learning.cycles)} cycles after each"
