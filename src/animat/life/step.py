@@ -23,7 +23,7 @@ from animat.numerics.compiled import compiled
 from animat.numerics.streams import MOTORS, SENSORS, bits, uniforms
 from animat.numerics.streams import WANDER as WANDERING
 from animat.robot.collision import collide
-from animat.robot.infrared import read_infrared
+from animat.robot.infrared import is_dark, read_infrared
 from animat.robot.motion import move
 
 
@@ -32,7 +32,7 @@ def step(state, mind, robot, raster, present, functions, seed, life):
     """Live one step. A life that ends in it is `dead` afterwards."""
     begin(state)
     if state.mode == WANDER:
-        sense(state, robot, raster, present, seed, life)
+        look_out(state, mind, robot, raster, present, seed, life)
     metabolise(state, mind, functions)
     if not state.dead:
         decide(state, mind, robot, raster, present, functions, seed, life)
@@ -45,6 +45,16 @@ def begin(state):
     """Clear what is said of one step only."""
     state.event = 0
     state.reward = 0
+
+
+@compiled
+def look_out(state, mind, robot, raster, present, seed, life):
+    """Sense as much as the search will look at: not the noise of sensors that see nothing."""
+    if behaviours.ignores_the_dark(mind.wander) and is_dark(state.x, state.y, robot, raster):
+        for n in range(len(state.readings)):
+            state.readings[n] = 0
+    else:
+        sense(state, robot, raster, present, seed, life)
 
 
 @compiled

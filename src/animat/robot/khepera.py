@@ -23,6 +23,8 @@ MICHEL1996, LINEAR = 0, 1
 MODELS = {"michel1996": MICHEL1996, "linear": LINEAR}
 
 LINEAR_REACH = 50.0  # mm
+REACH = {"michel1996": 58.0, "linear": LINEAR_REACH}
+"""How far before it a sensor of each model sees anything, in mm."""
 
 ROBOT = np.dtype(
     (
@@ -41,6 +43,7 @@ ROBOT = np.dtype(
                 ("ring_y", np.float64, (RING_POINTS,)),
                 ("infrared", np.int64),
                 ("infrared_noise", np.bool_),
+                ("reach", np.float64),
                 ("sensor_radius", np.float64),
                 ("sensor_x", np.float64, (SENSORS,)),
                 ("sensor_y", np.float64, (SENSORS,)),
@@ -159,6 +162,7 @@ class Khepera(Settings):
         ):
             robot[name] = getattr(self, name)
         robot["infrared"] = MODELS[self.infrared]
+        robot["reach"] = REACH[self.infrared]
         robot["sensor_radius"] = max(math.sqrt(s.x * s.x + s.y * s.y) for s in self.sensors)
         for point in range(RING_POINTS):
             sine, cosine = _direction(45.0 * point)
