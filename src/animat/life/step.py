@@ -5,7 +5,7 @@ place calls its four parts, and sets the motor commands (`left`, `right`) before
 a selector. Every function changes `state`, the record of `animat.life.state`, in place; `present`
 [S] tells which sites hold an object.
 
-    sense       read the infrared sensors
+    sense       read the infrared sensors; `step` leaves out what the search would not look at
     metabolise  the variables drift, the drives follow, a life may end
     decide      wander, meet an object, choose a behaviour, steer
     act         move, collide, and take the outcome of an act that ends
@@ -32,7 +32,7 @@ def step(state, mind, robot, raster, present, functions, seed, life):
     """Live one step. A life that ends in it is `dead` afterwards."""
     begin(state)
     if state.mode == WANDER:
-        look_out(state, mind, robot, raster, present, seed, life)
+        sense_what_is_looked_at(state, mind, robot, raster, present, seed, life)
     metabolise(state, mind, functions)
     if not state.dead:
         decide(state, mind, robot, raster, present, functions, seed, life)
@@ -48,7 +48,7 @@ def begin(state):
 
 
 @compiled
-def look_out(state, mind, robot, raster, present, seed, life):
+def sense_what_is_looked_at(state, mind, robot, raster, present, seed, life):
     """Sense as much as the search will look at: not the noise of sensors that see nothing."""
     if behaviours.ignores_the_dark(mind.wander) and is_dark(state.x, state.y, robot, raster):
         for n in range(len(state.readings)):
