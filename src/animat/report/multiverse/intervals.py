@@ -4,6 +4,10 @@
 goes over all rows with the same resamples: what it gives for each row alone. As everything told of
 universes is made of means, a resample is taken as how often it holds each life, and the means of
 all rows are a product of two matrices.
+
+Of whole numbers, such as lifespans, intervals are the same to the last digits. Of other numbers
+they may differ where very few values are resampled: BCa counts the resamples that equal the sample,
+and whether a sum in another order is equal is then a matter of rounding.
 """
 
 from __future__ import annotations
