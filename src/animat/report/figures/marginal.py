@@ -12,9 +12,12 @@ from animat.report.figures.style import BLACK, BLUE, GREY, VERMILLION, new_figur
 
 _POINTS = LinearSegmentedColormap.from_list("points", [VERMILLION, "white", BLUE])
 _DARK = 0.6
-_TICKS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
+_TICKS = (
+    (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0),
+    (0.5, 0.7, 1.0, 1.4, 2.0),
+    (0.8, 0.9, 1.0, 1.1, 1.2),
+)
 _FARTHEST = 30.0  # factors beyond it, of a few universes, are not worth the room
-_FINE_TICKS = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.4)
 
 
 @styled
@@ -84,13 +87,9 @@ def factors_figure(effects: pa.Table, outcomes: Mapping[str, str]) -> Figure:
 
 
 def _ticks(low: float, high: float) -> list[float]:
-    """Round factors between the ends of an axis, some more where few of them lie there."""
-    ticks = [tick for tick in _TICKS if low <= tick <= high]
-    if len(ticks) < 3:
-        ticks = [
-            tick for tick in (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.4) if low <= tick <= high
-        ]
-    return ticks
+    """Round factors between the ends of an axis, closer ones where few others lie there."""
+    inside = [[tick for tick in ticks if low <= tick <= high] for ticks in _TICKS]
+    return next((ticks for ticks in inside if len(ticks) >= 3), inside[-1])
 
 
 def _by_contrast(effects: pa.Table) -> dict[str, dict[str, dict]]:
