@@ -353,9 +353,10 @@ def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name_and_is_gone_o
     if sent == signal.SIGINT:
         assert run.returncode == 130
         assert "interrupted: finishing the parts that are under way" in err
+        kept = tmp_path / ".out.partial"
         assert err.endswith(
-            f"animat: what is finished is kept in {tmp_path / '.out.partial'}; the same command goes"
-            " on with it\nanimat: interrupted; nothing is half-written\n"
+            f"animat: what is finished is kept in {kept}; the same command goes on with it\n"
+            "animat: interrupted; nothing is half-written\n"
         )
     log = tmp_path / ".out.partial" / "experiment2" / "log.jsonl"
     before = log.read_text().count('"event": "part", ')
