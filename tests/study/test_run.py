@@ -114,6 +114,22 @@ def test_what_is_under_way_is_finished_and_no_more_begun(faults, tmp_path):
     assert parts == dict.fromkeys(plan.all_parts(), 1)
 
 
+def test_parts_that_nobody_has_begun_are_taken_back(faults, tmp_path):
+    handed_out = []
+
+    class Later(Executor):
+        def submit(self, *_):
+            handed_out.append(Future())
+            tell("Lives", len(handed_out) == 6, 100)
+            return handed_out[-1]
+
+    with asking_after(1) as tell:
+        outcome = run(faults.plan(faults.LARGER), tmp_path, Workers(Later(), 4, None), tell)
+    assert outcome.tally.counts["lives"].rows == 0
+    assert len(handed_out) == 6
+    assert all(future.cancelled() for future in handed_out)
+
+
 def test_the_second_interruption_stops_at_once_and_loses_nothing_that_is_finished(faults, tmp_path):
     plan = faults.plan(faults.SMALL.replace("steps = 150", "steps = 1_000_000_000"))
     started = Event()
