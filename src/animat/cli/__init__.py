@@ -5,5 +5,6 @@ each mistake; `--debug` shows where it came from.
 """
 
 from animat.cli import life as life
+from animat.cli import replay as replay
 from animat.cli import reproduce as reproduce
 from animat.cli.app import main as main
