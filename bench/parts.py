@@ -1,0 +1,389 @@
+"""Where the time of a step goes: its parts in nanoseconds, and what the machine could do at best.
+
+    python bench/parts.py [--repeat 9] [--json FILE] [--markdown]
+
+Every part is a function of the package, over states of real lives in World 1 (BLIND, michel1996).
+It is measured twice. Alone, over one state after another: calls do not wait for each other, so this
+is what the part costs where the processor has nothing else to do. In a step: lives are lived with
+the part done once more in every step that needs it, which changes nothing in them, and the
+difference is taken.
+
+The floor of a part is what its arithmetic costs where nothing waits: the operations counted in the
+source, of the kind that takes longest, at the rate at which this machine does them, which is
+measured in the same run. No order of the same scalar arithmetic is faster; loads, branches and
+waiting come on top.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+import animat
+import figures
+import machine
+from animat.life.encounter import met_site
+from animat.life.lives import live_on
+from animat.life.setting import Setting, bring_together
+from animat.life.step import step
+from animat.mind import behaviours, drives, homeostasis
+from animat.mind.behaviours import ACT, WANDER
+from animat.numerics.compiled import OPTIONS, compiled
+from animat.numerics.elementary import sine_cosine
+from animat.numerics.streams import bits
+from animat.robot.collision import collide
+from animat.robot.infrared import read_infrared
+from animat.robot.motion import move
+from animat.robot.probe import room
+from figures import Table
+
+(
+    NOTHING,
+    BLOCK,
+    SINE,
+    DRIFT,
+    DRIVES,
+    DEATH,
+    SENSING,
+    LOOKING,
+    WANDERING,
+    MOTION,
+    COLLISION,
+) = range(11)
+
+OWN_STREAM = 255
+"""A purpose that no stream of the package has."""
+
+SEED = np.uint64(1)
+
+
+class Part(NamedTuple):
+    """A part of a step: which states do it, and the operations of one call, as its source has them.
+
+    `whole` parts make up the step; the others are contained in those.
+    """
+
+    name: str
+    which: int
+    when: str = "always"
+    whole: bool = True
+    products: int = 0
+    additions_and_products: int = 0
+    quotients: int = 0
+
+
+PARTS = (
+    Part("a block of random numbers", BLOCK, "blocks", products=20),
+    Part("sine and cosine", SINE, "turns", whole=False, additions_and_products=51),
+    Part("variables drift", DRIFT, additions_and_products=13, quotients=2),
+    Part("drives", DRIVES, additions_and_products=48),
+    Part("looking for death", DEATH, additions_and_products=6),
+    Part("sensing", SENSING, "wanders"),
+    Part("- where nothing is near", SENSING, "wanders far", whole=False, quotients=2),
+    # Sine and cosine, and eight looks before the sensors; the probes come on top.
+    Part("- where something is", SENSING, "wanders near", whole=False, additions_and_products=155),
+    Part("looking for objects", LOOKING, "wanders", quotients=2),
+    Part("wandering", WANDERING, "wanders"),
+    Part("motion, its sine and cosine too", MOTION, "moves", additions_and_products=76),
+    Part("collision", COLLISION, "moves", quotients=2),
+)
+
+
+@compiled
+def do(which, state, scratch, mind, robot, raster, present, functions, seed, life):
+    """Do a part of the step of a state once more; what comes of it is left in `scratch`."""
+    if which == BLOCK:
+        a, b, c, d = bits(seed, life, OWN_STREAM, state.step)
+        scratch.step = np.int64(a ^ b ^ c ^ d)
+    elif which == SINE:
+        # A little aside, so that it cannot be taken from where the step needs the same.
+        scratch.x, scratch.y = sine_cosine(state.heading + 0.01)
+    elif which == DRIFT:
+        homeostasis.metabolise(scratch.values, mind, functions.law)
+    elif which == DRIVES:
+        drives.raise_drives(state.values, state.changes, mind, scratch.drives, functions.drives)
+    elif which == DEATH:
+        scratch.death_variable = homeostasis.first_outside(state.values, mind)
+    elif which == SENSING:
+        word = np.uint64(state.step)
+        read_infrared(
+            state.x + 0.0,
+            state.y + 0.0,
+            state.heading + 0.01,
+            robot,
+            raster,
+            present,
+            (word, word, word, word),
+            scratch.readings,
+        )
+    elif which == LOOKING:
+        scratch.site = met_site(state, robot.radius + mind.encounter_range, raster, present)
+    elif which == WANDERING:
+        left, right = behaviours.wander(
+            mind.wander,
+            state.readings,
+            robot.sensor_cosine,
+            robot.sensor_y,
+            scratch.memory,
+            0.4,
+            0.6,
+            mind.cruise_speed,
+            mind.turn_speed,
+            functions.wander,
+        )
+        scratch.left = int(left)
+        scratch.right = int(right)
+    elif which == MOTION:
+        scratch.x, scratch.y, scratch.heading = move(
+            state.x, state.y, state.heading, state.left, state.right, robot, 0.3, 0.6, 0.2
+        )
+    elif which == COLLISION:
+        scratch.x, scratch.y, scratch.heading, scratch.dead = collide(
+            state.x,
+            state.y,
+            state.heading,
+            state.x + 1.0,
+            state.y + 1.0,
+            state.heading + 0.01,
+            robot,
+            raster,
+            present,
+        )
+
+
+@njit(**OPTIONS)
+def alone(which, rounds, states, scratch, mind, robot, raster, present, functions, seed):
+    """Do a part for every one of the states, so many times."""
+    for _ in range(rounds):
+        for n in range(len(states)):
+            do(
+                which,
+                states[n],
+                scratch[0],
+                mind,
+                robot,
+                raster,
+                present[0],
+                functions,
+                seed,
+                np.uint64(n),
+            )
+
+
+@njit(**OPTIONS)
+def in_step(which, until, states, scratch, mind, robot, raster, present, functions, seed):
+    """Live lives on, with a part done once more in every step that needs it."""
+    for n in range(len(states)):
+        state = states[n]
+        life = np.uint64(n)
+        while state.step < until:
+            wanders = state.mode == WANDER
+            if which < SENSING or wanders or (which > WANDERING and state.mode != ACT):
+                do(
+                    which,
+                    state,
+                    scratch[0],
+                    mind,
+                    robot,
+                    raster,
+                    present[n],
+                    functions,
+                    seed,
+                    life,
+                )
+            step(state, mind, robot, raster, present[n], functions, seed, life)
+
+
+class Sample(NamedTuple):
+    """States of real lives, and which of them do what."""
+
+    setting: Setting
+    states: np.ndarray
+    present: np.ndarray
+    groups: dict[str, np.ndarray]
+
+    def share(self, part: Part) -> float:
+        """Return how often a step does a part."""
+        return float(self.groups[part.when].mean())
+
+
+def sample(setting: Setting, lives: int, every: int, times: int) -> Sample:
+    """Live some lives and keep their states every so many steps."""
+    indices = np.arange(lives, dtype=np.uint64)
+    states, present = setting.begin(1, indices)
+    kept = []
+    for turn in range(1, times + 1):
+        live_on(setting, 1, indices, states, present, turn * every)
+        kept.append(states.copy())
+    states = np.concatenate(kept)
+    wanders = states["mode"] == WANDER
+    moves = states["mode"] != ACT
+    free = np.array([room_at(state["x"], state["y"], setting.raster) for state in states])
+    senses_far = free - setting.robot_parameters.sensor_radius > 58.0
+    groups = {
+        "always": np.ones(len(states)),
+        "blocks": wanders * 1.0 + moves,
+        "turns": moves + wanders * ~senses_far,
+        "wanders": wanders,
+        "wanders far": wanders & senses_far,
+        "wanders near": wanders & ~senses_far,
+        "moves": moves,
+    }
+    return Sample(setting, states, present, groups)
+
+
+@njit(**OPTIONS)
+def room_at(x, y, raster):
+    """Return how far (mm) everything is free for certain."""
+    return room(
+        x / raster.resolution + raster.border, y / raster.resolution + raster.border, raster
+    )
+
+
+def time_alone(taken: Sample, part: Part, which: int, calls: int) -> Callable[[], float]:
+    """Return a function that gives the nanoseconds of a call of a part, or of no part."""
+    chosen = taken.states[taken.groups[part.when] > 0]
+    rounds = max(1, calls // max(1, len(chosen)))
+    setting = taken.setting
+
+    def measure() -> float:
+        states, scratch = chosen.copy(), taken.states[:1].copy()
+        start = time.thread_time()
+        alone(
+            which,
+            rounds,
+            states,
+            scratch,
+            setting.mind_parameters,
+            setting.robot_parameters,
+            setting.raster,
+            taken.present,
+            setting.functions,
+            SEED,
+        )
+        return 1e9 * (time.thread_time() - start) / (rounds * max(1, len(states)))
+
+    return measure
+
+
+def time_in_step(taken: Sample, which: int, lives: int, steps: int) -> Callable[[], float]:
+    """Return a function that gives the nanoseconds of a step with one part more, or none.
+
+    Raises SystemExit if the part changed the lives.
+    """
+
+    def measure() -> float:
+        states, spent = once_more(taken, which, lives, steps)
+        if states.tobytes() != same.tobytes():
+            raise SystemExit(f"part {which}: to do it once more changes the lives")
+        return spent
+
+    same, _ = once_more(taken, NOTHING, lives, steps)
+    return measure
+
+
+def once_more(taken: Sample, which: int, lives: int, steps: int) -> tuple[np.ndarray, float]:
+    """Live with a part done once more; return the states and the nanoseconds of a step."""
+    setting = taken.setting
+    states, present = setting.begin(1, np.arange(lives, dtype=np.uint64))
+    start = time.thread_time()
+    in_step(
+        which,
+        steps,
+        states,
+        taken.states[:1].copy(),
+        setting.mind_parameters,
+        setting.robot_parameters,
+        setting.raster,
+        present,
+        setting.functions,
+        SEED,
+    )
+    return states, 1e9 * (time.thread_time() - start) / (lives * steps)
+
+
+def of_a_step(repeat: int, tiny: bool, rates: dict[str, float]) -> Table:
+    """Measure every part, alone and in a step."""
+    setting = bring_together(animat.Mind(death=False), animat.World.abundant())
+    taken = sample(setting, 8, 500, 4) if tiny else sample(setting, 16, 2_000, 32)
+    calls, lives, steps = (1_000, 2, 100) if tiny else (200_000, 8, 20_000)
+    measures: dict[tuple[str, int, str], Callable[[], float]] = {}
+    for part in PARTS:
+        measures["alone", part.which, part.when] = time_alone(taken, part, part.which, calls)
+        measures["alone", NOTHING, part.when] = time_alone(taken, part, NOTHING, calls)
+        if not part.name.startswith("-"):
+            measures["step", part.which, ""] = time_in_step(taken, part.which, lives, steps)
+    measures["step", NOTHING, ""] = time_in_step(taken, NOTHING, lives, steps)
+    for measure in measures.values():
+        measure()  # compiles
+    least = {key: min(times) for key, times in figures.in_turns(measures, repeat).items()}
+    whole = least["step", NOTHING, ""]
+    rows = []
+    total = 0.0
+    floors = 0.0
+    for part in PARTS:
+        call = least["alone", part.which, part.when] - least["alone", NOTHING, part.when]
+        more = least.get(("step", part.which, ""), whole) - whole
+        floor = at_best(part, rates)
+        rows.append(
+            {
+                "part": part.name,
+                "times in a step": taken.share(part),
+                "alone, ns a call": call,
+                "alone, ns a step": call * taken.share(part),
+                "once more in a step, ns": None if part.name.startswith("-") else more,
+                "floor, ns a call": floor or None,
+                "alone / floor": call / floor if floor else None,
+            }
+        )
+        if part.whole:
+            total += call * taken.share(part)
+            floors += floor * taken.share(part)
+    rows.append(closing("the rest: modes, events, memory, loop", whole - total))
+    rows.append(closing("a step", whole))
+    return Table(
+        "Where the time of a step goes",
+        rows,
+        "World 1, BLIND, michel1996; nanoseconds of the processor, the least of "
+        f"{repeat} turns. Rows with a dash are contained in the row above them, sine and cosine in "
+        "motion and in what is near. The floors of the rows that make up a step come to "
+        f"{figures.cell(floors)} ns.",
+    )
+
+
+def at_best(part: Part, rates: dict[str, float]) -> float:
+    """Return the nanoseconds below which the arithmetic of a part cannot come, 0 if not counted."""
+    return max(
+        part.products * rates[machine.PRODUCT],
+        part.additions_and_products * rates[machine.FLOAT],
+        part.quotients * rates[machine.QUOTIENT],
+    )
+
+
+def closing(name: str, cost: float) -> dict[str, object]:
+    """Return a row that holds a cost per step only."""
+    return {
+        "part": name,
+        "times in a step": 1.0,
+        "alone, ns a call": None,
+        "alone, ns a step": cost,
+        "once more in a step, ns": None,
+        "floor, ns a call": None,
+        "alone / floor": None,
+    }
+
+
+def tables(repeat: int, tiny: bool) -> Iterator[Callable[[], Table]]:
+    """Yield what makes each table."""
+    rates = machine.rates(repeat, 1_000 if tiny else 1_000_000)
+    yield partial(machine.table, rates)
+    yield partial(of_a_step, repeat, tiny, rates)
+
+
+if __name__ == "__main__":
+    figures.run(__doc__, tables, repeat=9)
