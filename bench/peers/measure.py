@@ -15,6 +15,7 @@ import json
 import os
 import time
 from collections.abc import Callable
+from importlib.metadata import version
 from typing import Any
 
 import work
@@ -36,11 +37,12 @@ def steps_per_second(robots: Any, number: int, seconds: float) -> float:
 
 def share_turning(robots: Any, number: int, samples: int) -> float:
     """Return how large a share of the robot-steps is spent turning away."""
+    times = max(1, samples // number)
     total = 0.0
-    for _ in range(max(1, samples // number)):
-        robots.step(7)
+    for _ in range(times):
+        robots.step(1)
         total += robots.turning()
-    return total / max(1, samples // number)
+    return total / times
 
 
 def figures(start: Callable[..., Any], options: argparse.Namespace) -> list[dict[str, Any]]:
@@ -51,13 +53,14 @@ def figures(start: Callable[..., Any], options: argparse.Namespace) -> list[dict
             robots = start(work.obstacles(count), number, SEED)
             robots.step(1)  # compiles, where there is something to compile
             speed = steps_per_second(robots, number, options.seconds)
-            turning = share_turning(robots, number, options.samples)
+            most = number == max(options.robots)
+            turning = share_turning(robots, number, options.samples) if most else None
             rows.append(
                 {
                     "obstacles": count,
                     "robots": number,
                     "steps per second": speed,
-                    "share of steps turning away": turning,
+                    "turning away": turning,
                 }
             )
     return rows
@@ -65,19 +68,22 @@ def figures(start: Callable[..., Any], options: argparse.Namespace) -> list[dict
 
 def main() -> None:
     """Start, step once, measure, print."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("adapter", help="module:function")
     parser.add_argument("--obstacles", type=int, nargs="+", default=[0, 10, 20, 30])
     parser.add_argument("--robots", type=int, nargs="+", default=[1])
     parser.add_argument("--seconds", type=float, default=0.5)
     parser.add_argument("--samples", type=int, default=1000)
+    parser.add_argument("--packages", nargs="*", default=[], help="whose versions are told")
     options = parser.parse_args()
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     module, _, function = options.adapter.partition(":")
     start = getattr(importlib.import_module(module), function)
     start(work.obstacles(10), 1, SEED).step(1)
-    said = {"start-up, seconds": time.process_time(), "figures": figures(start, options)}
+    said: dict[str, Any] = {"start-up, seconds": time.process_time()}
+    said["versions"] = {name: version(name) for name in options.packages}
+    said["figures"] = figures(start, options)
     print(json.dumps(said))
 
 
