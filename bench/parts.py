@@ -30,7 +30,7 @@ from animat.life.lives import live_on
 from animat.life.setting import Setting, bring_together
 from animat.mind.behaviours import ACT, WANDER
 from figures import Table
-from step_parts import NOTHING, PARTS, Part, alone, in_step, room_at
+from step_parts import NOTHING, PARTS, Part, alone, dark_at, in_step
 
 SEED = np.uint64(1)
 
@@ -59,15 +59,14 @@ def sample(setting: Setting, lives: int, every: int, times: int) -> Sample:
     states = np.concatenate(kept)
     wanders = states["mode"] == WANDER
     moves = states["mode"] != ACT
-    free = np.array([room_at(state["x"], state["y"], setting.raster) for state in states])
-    senses_far = free - setting.robot_parameters.sensor_radius > 58.0
+    robot, raster = setting.robot_parameters, setting.raster
+    dark = np.array([dark_at(state["x"], state["y"], robot, raster) for state in states])
     groups = {
         "always": np.ones(len(states)),
-        "blocks": wanders * 1.0 + moves,
-        "turns": moves + wanders * ~senses_far,
+        "draws and turns": moves * 1.0 + (wanders & ~dark),
         "wanders": wanders,
-        "wanders far": wanders & senses_far,
-        "wanders near": wanders & ~senses_far,
+        "wanders in the dark": wanders & dark,
+        "wanders in the light": wanders & ~dark,
         "moves": moves,
     }
     return Sample(setting, states, present, groups)
@@ -147,19 +146,21 @@ def of_a_step(repeat: int, tiny: bool, rates: dict[str, float]) -> Table:
         call = least["alone", part.which, part.when] - least["alone", NOTHING, part.when]
         more = least.get(("step", part.which, ""), whole) - whole
         floor = at_best(part, rates)
+        inner = part.name.startswith("-")
         rows.append(
             {
                 "part": part.name,
                 "times in a step": taken.share(part),
                 "alone, ns a call": call,
                 "alone, ns a step": call * taken.share(part),
-                "once more in a step, ns": None if part.name.startswith("-") else more,
+                "once more in a step, ns": None if inner else more,
                 "floor, ns a call": floor or None,
                 "alone / floor": call / floor if floor else None,
             }
         )
         if part.whole:
             total += call * taken.share(part)
+        if part.whole or inner:
             floors += floor * taken.share(part)
     rows.append(closing("the rest: modes, events, memory, loop", whole - total))
     rows.append(closing("a step", whole))
@@ -168,7 +169,7 @@ def of_a_step(repeat: int, tiny: bool, rates: dict[str, float]) -> Table:
         rows,
         "World 1, BLIND, michel1996; nanoseconds of the processor, the least of "
         f"{repeat} turns. Rows with a dash are contained in the row above them, sine and cosine in "
-        "motion and in what is near. The floors of the rows that make up a step come to "
+        "motion and in sensing in the light. The floors of the rows that make up a step come to "
         f"{figures.cell(floors)} ns.",
     )
 

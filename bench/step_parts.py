@@ -15,9 +15,8 @@ from animat.numerics.compiled import OPTIONS, compiled
 from animat.numerics.elementary import sine_cosine
 from animat.numerics.streams import bits
 from animat.robot.collision import collide
-from animat.robot.infrared import read_infrared
+from animat.robot.infrared import is_dark, read_infrared
 from animat.robot.motion import move
-from animat.robot.probe import room
 
 (
     NOTHING,
@@ -53,20 +52,33 @@ class Part(NamedTuple):
 
 
 PARTS = (
-    Part("a block of random numbers", BLOCK, "blocks", products=20),
-    Part("sine and cosine", SINE, "turns", whole=False, additions_and_products=51),
+    Part("a block of random numbers", BLOCK, "draws and turns", products=20),
+    Part("sine and cosine", SINE, "draws and turns", whole=False, additions_and_products=51),
     Part("variables drift", DRIFT, additions_and_products=13, quotients=2),
     Part("drives", DRIVES, additions_and_products=48),
     Part("looking for death", DEATH, additions_and_products=6),
     Part("sensing", SENSING, "wanders"),
-    Part("- where nothing is near", SENSING, "wanders far", whole=False, quotients=2),
+    Part("- in the dark", SENSING, "wanders in the dark", whole=False, additions_and_products=5),
     # Sine and cosine, and eight looks before the sensors; the probes come on top.
-    Part("- where something is", SENSING, "wanders near", whole=False, additions_and_products=155),
-    Part("looking for objects", LOOKING, "wanders", quotients=2),
+    Part("- in the light", SENSING, "wanders in the light", False, additions_and_products=154),
+    Part("looking for objects", LOOKING, "wanders", additions_and_products=4),
     Part("wandering", WANDERING, "wanders"),
-    Part("motion, its sine and cosine too", MOTION, "moves", additions_and_products=76),
-    Part("collision", COLLISION, "moves", quotients=2),
+    Part("motion, its sine and cosine too", MOTION, "moves", True, 0, 76, 1),
+    Part("collision", COLLISION, "moves", additions_and_products=4),
 )
+
+
+@compiled
+def sense(x, y, state, scratch, robot, raster, present):
+    """Sense as a step of wandering does, the random numbers apart."""
+    if is_dark(x, y, robot, raster):
+        for n in range(len(scratch.readings)):
+            scratch.readings[n] = 0
+    else:
+        word = np.uint64(state.step)
+        words = word, word, word, word
+        heading = state.heading + 0.01
+        read_infrared(x, y, heading, robot, raster, present, words, scratch.readings)
 
 
 @compiled
@@ -85,17 +97,7 @@ def do(which, state, scratch, mind, robot, raster, present, functions, seed, lif
     elif which == DEATH:
         scratch.death_variable = homeostasis.first_outside(state.values, mind)
     elif which == SENSING:
-        word = np.uint64(state.step)
-        read_infrared(
-            state.x + 0.0,
-            state.y + 0.0,
-            state.heading + 0.01,
-            robot,
-            raster,
-            present,
-            (word, word, word, word),
-            scratch.readings,
-        )
+        sense(state.x + 0.0, state.y + 0.0, state, scratch, robot, raster, present)
     elif which == LOOKING:
         scratch.site = met_site(state, robot.radius + mind.encounter_range, raster, present)
     elif which == WANDERING:
@@ -175,8 +177,6 @@ def in_step(which, until, states, scratch, mind, robot, raster, functions, seed,
 
 
 @njit(**OPTIONS)
-def room_at(x, y, raster):
-    """Return how far (mm) everything is free for certain."""
-    return room(
-        x / raster.resolution + raster.border, y / raster.resolution + raster.border, raster
-    )
+def dark_at(x, y, robot, raster):
+    """Tell whether there is nothing for a sensor to see."""
+    return is_dark(x, y, robot, raster)
