@@ -14,7 +14,7 @@ from animat.cli.options import Debug
 
 app = typer.Typer(
     name="animat",
-    help="A laboratory for motivated robots: reproduce the paper of 2003, live a life.",
+    help="A laboratory for motivated robots: reproduce the paper of 2003, study, live a life.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,  # to load rich would take most of the time of --help
