@@ -1,4 +1,4 @@
-"""Cases that cannot be lived are refused before any is."""
+"""Studies that cannot be lived are refused before any life is."""
 
 from __future__ import annotations
 
@@ -7,21 +7,22 @@ from collections import Counter
 
 import pytest
 
-import animat.study.livable
 from animat.settings import SettingsError, validated
-from animat.study.design import Case, cases
 from animat.study.livable import check_livable
+from animat.study.plan import Plan
 from animat.study.study import Study
+from animat.world.arena import Arena
 from animat.world.world import World
 
 
-def cases_of(text: str) -> list[Case]:
-    return cases(validated({"name": "x", **tomllib.loads(text)}, Study))
+def plan_of(text: str) -> Plan:
+    return Plan(validated({"name": "x", **tomllib.loads(text)}, Study))
 
 
 def refused(text: str) -> list[str]:
+    """The lines of a refusal, by the plan or by who looks further."""
     with pytest.raises(SettingsError) as caught:
-        check_livable(cases_of(text))
+        check_livable(plan_of(text))
     return list(caught.value.problems)
 
 
@@ -80,20 +81,42 @@ def test_features_that_the_networks_do_not_know_are_told(tmp_path):
     assert 'where world.layout = "scarce"' in line
 
 
+def test_a_world_without_room_for_the_robot_is_told(tmp_path):
+    full = tmp_path / "full.toml"
+    World.random({}, arena=Arena(width=125.0, height=125.0), name="full").save(full)
+    wide = "[robot]\nring_radius = 40.0\n"
+    text = f'{wide}[design.grid]\n"world.layout" = ["scarce", "{full}"]\n"mind.gate" = ["always"]'
+    (line,) = refused(text)
+    assert "(1 of 2 cases)" in line
+    assert 'world "full" has no room for the robot to start' in line
+    (line,) = refused(f'{wide}[mind]\nagent = "AF"\n[teacher]\nworld = "{full}"')
+    assert line == 'world "full" has no room for the robot to start'
+
+
 def test_what_can_be_lived_passes():
-    check_livable(cases_of('[mind]\nagent = "AF"\n[teacher]\nworld = "scarce"'))
+    check_livable(plan_of('[mind]\nagent = "AF"\n[teacher]\nworld = "scarce"'))
 
 
-def test_what_cases_share_is_looked_at_once(monkeypatch):
-    seen: Counter[str] = Counter()
-    real = animat.study.livable.bring_together
-
-    def counting(mind, world, robot):
-        seen[f"{mind.agent} {world.name}"] += 1
-        return real(mind, world, robot)
-
-    monkeypatch.setattr(animat.study.livable, "bring_together", counting)
-    check_livable(
-        cases_of('[design.grid]\n"mind.agent" = ["BLIND", "RANDOM"]\nsteps = [1, 2, 3, 4]')
+def test_each_world_is_drawn_once_for_each_reach(monkeypatch):
+    plan = plan_of(
+        '[design.grid]\n"mind.agent" = ["BLIND", "RANDOM", "AF"]\nsteps = [1, 2, 3]\n'
+        '"world.layout" = ["abundant", "scarce"]\n"mind.encounter_range" = [20.0, 30.0]\n[teacher]'
     )
-    assert seen == {"BLIND abundant": 1, "RANDOM abundant": 1}
+    drawn: Counter[str] = Counter()
+    settings, classes = plan.setting, plan.setting_of_class
+
+    def setting(place):
+        case = plan.lived[place]
+        drawn[f"{case.settings.world.layout} {case.settings.mind.encounter_range}"] += 1
+        return settings(place)
+
+    def setting_of_class(place):
+        drawn["class"] += 1
+        return classes(place)
+
+    monkeypatch.setattr(plan, "setting", setting)
+    monkeypatch.setattr(plan, "setting_of_class", setting_of_class)
+    check_livable(plan)
+    assert drawn == {
+        f"{world} {reach}": 1 for world in ("abundant", "scarce") for reach in (20.0, 30.0)
+    }

@@ -7,6 +7,7 @@ import pytest
 from animat.settings import SettingsError
 from animat.study.design import cases
 from animat.study.livable import check_livable
+from animat.study.plan import Plan
 from animat.study.settings import Teacher, WorldChoice
 from animat.study.shipped import FOLDER, is_name, shipped, study_file, write_starter
 from animat.study.study import Record, read_study
@@ -22,7 +23,7 @@ def test_the_experiments_of_the_paper_and_a_starter_are_there():
 def test_each_can_be_lived_and_goes_by_its_name(name):
     study = read_study(shipped(name))
     assert study.name == name
-    check_livable(cases(study))
+    check_livable(Plan(study))
 
 
 def test_experiment_1_is_that_of_the_paper():

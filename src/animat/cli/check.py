@@ -41,27 +41,31 @@ def check(study: StudyFile, changes: Set = None, debug: Debug = False) -> None:
     """Say what a study would run, and what that would cost, without running it."""
     from rich.console import Console
 
-    from animat.study.design import cases, excluded
+    from animat.study.design import excluded
     from animat.study.expectation import expect
     from animat.study.livable import check_livable
+    from animat.study.plan import Plan
     from animat.study.shipped import study_file
     from animat.study.study import read_study
 
     path = study_file(study)
     asked = read_study(path, changes or ())
-    found = cases(asked)
     left_out = excluded(asked)
     with compiling_told():
-        check_livable(found)
-        expected = expect(asked, found)
-    many = f"{len(found):,} cases" if len(found) > 1 else "1 case"
-    print(f"{asked.name} ({path}): {many}, {asked.lives:,} lives each")
-    if any(case.factors for case in found):
+        plan = Plan(asked)
+        check_livable(plan)
+        expected = expect(plan)
+    cases = "1 case" if len(plan.cases) == 1 else f"{len(plan.cases):,} cases"
+    print(f"{asked.name} ({path}): {cases}, {asked.lives:,} lives each")
+    if any(case.factors for case in plan.cases):
         width = None if sys.stdout.isatty() else PRINTED_WIDTH
-        Console(width=width, markup=False, emoji=False, highlight=False).print(_table(found))
+        console = Console(width=width, markup=False, emoji=False, highlight=False)
+        console.print(_table(plan.cases))
     for rule in left_out:
         print(f"left out: {rule.count:,} combinations: {rule.why}")
-    for line in _costs(expected, asked.lives * len(found)):
+    if again := len(plan.cases) - len(plan.lived):
+        print(f"lived once: {again:,} cases have the same lives as others")
+    for line in _costs(expected):
         print(line)
 
 
@@ -92,7 +96,7 @@ def _written(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _costs(expected: Expectation, lives: int) -> list[str]:
+def _costs(expected: Expectation) -> list[str]:
     from animat.study.expectation import STEPS
 
     learning = ""
@@ -105,9 +109,9 @@ def _costs(expected: Expectation, lives: int) -> list[str]:
         traces = f", {_from_to(expected.trace_bytes, _size)} of traces"
     cases = "1 case" if expected.measured_cases == 1 else f"{expected.measured_cases} cases"
     lines = [
-        f"at most: {expected.most_steps:,} steps of {lives:,} lives{learning}",
-        f"expected: {_from_to(expected.seconds, _duration)} on the {os.cpu_count()} cores here,"
-        f" {_size(expected.lives_bytes)} of lives{traces}",
+        f"at most: {expected.most_steps:,} steps of {expected.lives:,} lives{learning}",
+        f"expected: {_from_to(expected.seconds, _words)} on the {os.cpu_count()} cores here,"
+        f" {_size(expected.tables_bytes)} of tables{traces}",
         f"estimated from {expected.measured_lives:,} lives of {cases}, up to {STEPS:,} steps each",
     ]
     if expected.seconds.low < expected.seconds.high:
@@ -120,12 +124,10 @@ def _from_to(ends: Range, told: Callable[[float], str]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _duration(seconds: float) -> str:
-    """Return a time in the largest unit of which there are at least two."""
-    for unit, length in (("days", 86_400), ("hours", 3_600), ("minutes", 60)):
-        if seconds >= 2 * length:
-            return f"{seconds / length:,.0f} {unit}"
-    return f"{max(seconds, 1.0):.0f} s"
+def _words(seconds: float) -> str:
+    from animat.progress import in_words
+
+    return in_words(max(1.0, seconds))
 
 
 def _size(count: float) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import time
-from collections.abc import Sequence
 from io import BytesIO
 from typing import NamedTuple
 
@@ -13,11 +12,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from animat.life.life import Recording, live
+from animat.life.life import Recording, lived
 from animat.life.lives import CHUNK, live_chunks
 from animat.life.setting import Setting, bring_together
-from animat.study.design import Case
-from animat.study.study import Record, Study
+from animat.life.trace import table
+from animat.study.plan import Plan, world_of
 
 CASES = 6
 """Cases that are measured, spread over the design."""
@@ -41,17 +40,18 @@ class Range(NamedTuple):
 
 
 class Expectation(NamedTuple):
-    """What a study would cost: steps, seconds and bytes.
+    """What a study would cost: steps, seconds and bytes; equal lives are lived once.
 
     `learning_steps` are those of the `robots` whose networks AF has. `measured_lives` of
     `measured_cases` cases gave the speed of all cores, how long lives are, and the room of a row.
     """
 
+    lives: int
     most_steps: int
     robots: int
     learning_steps: int
     seconds: Range
-    lives_bytes: float
+    tables_bytes: float
     trace_bytes: Range
     measured_lives: int
     measured_cases: int
@@ -85,36 +85,34 @@ class Measured(NamedTuple):
         return Range(mean + alive * further, mean + alive * left)
 
 
-def expect(study: Study, cases: Sequence[Case]) -> Expectation:
-    """Return what the cases of a study would cost, cases that cannot be told apart not spared.
-
-    Raises SettingsError for what cannot be lived.
-    """
-    places = sorted({round(place) for place in np.linspace(0, len(cases) - 1, CASES)})
-    measured = [_measure(cases[place]) for place in places]
+def expect(plan: Plan) -> Expectation:
+    """Return what a study would cost. Raises SettingsError for what cannot be lived."""
+    study = plan.study
+    places = sorted({round(place) for place in np.linspace(0, len(plan.lived) - 1, CASES)})
+    measured = [_measure(plan, place) for place in places]
     speed = sum(one.steps for one in measured) / sum(one.seconds for one in measured)
     means = [
-        one.mean_lifespan(cases[place].steps) for one, place in zip(measured, places, strict=True)
+        one.mean_lifespan(plan.lived[place].steps)
+        for one, place in zip(measured, places, strict=True)
     ]
     mean = Range(*(sum(ends) / len(means) for ends in zip(*means, strict=True)))
-    classes = _classes(cases).values()
-    learning_steps = sum(robots * steps for robots, steps in classes)
-    lives = study.lives * len(cases)
+    lives = plan.numbering["lives"].total
     return Expectation(
-        most_steps=sum(case.steps for case in cases) * study.lives,
-        robots=sum(robots for robots, _ in classes),
-        learning_steps=learning_steps,
-        seconds=Range(*((steps * lives + learning_steps) / speed for steps in mean)),
-        lives_bytes=_bytes_of_a_row(measured[0].table) * lives,
-        trace_bytes=_traces(study.record, mean, cases),
+        lives=lives,
+        most_steps=sum(case.steps for case in plan.lived) * study.lives,
+        robots=plan.numbering["teachers"].total,
+        learning_steps=plan.steps_to_learn,
+        seconds=Range(*((steps * lives + plan.steps_to_learn) / speed for steps in mean)),
+        tables_bytes=_tables(plan, measured[0].table),
+        trace_bytes=_traces(plan, mean),
         measured_lives=sum(one.table.num_rows for one in measured),
         measured_cases=len(measured),
     )
 
 
-def _measure(case: Case) -> Measured:
+def _measure(plan: Plan, place: int) -> Measured:
     """Live some lives of a case on all cores, each a short while."""
-    setting = _setting(case)
+    case, setting = plan.lived[place], _setting(plan, place)
     steps = min(case.steps, STEPS)
     lives = CHUNK * (os.cpu_count() or 1)
     # The first life is not counted: it compiles what is not on disk yet.
@@ -122,49 +120,43 @@ def _measure(case: Case) -> Measured:
     started = time.perf_counter()
     chunks = list(live_chunks(setting, case.seed, case.first, lives, steps))
     seconds = time.perf_counter() - started
-    table = pa.concat_tables(map(pa.table, chunks)).unify_dictionaries()
-    return Measured(table, steps, seconds)
+    return Measured(pa.concat_tables(map(pa.table, chunks)).unify_dictionaries(), steps, seconds)
 
 
-def _setting(case: Case) -> Setting:
+def _setting(plan: Plan, place: int) -> Setting:
     """Return the setting of a case; AF, which has not learnt yet, knows the truth instead."""
-    mind = case.settings.mind
-    if mind.agent == "AF":
-        mind = mind.model_copy(update={"agent": "ORACLE"})
-    return bring_together(mind, case.settings.world.world(), case.settings.robot)
+    setting = plan.setting(place)
+    if setting.mind.agent != "AF":
+        return setting
+    mind = setting.mind.model_copy(update={"agent": "ORACLE"})
+    return bring_together(mind, setting.world, setting.robot, setting.functions)
 
 
-def _classes(cases: Sequence[Case]) -> dict[str, tuple[int, int]]:
-    """Return robots and steps of everyone who teaches, by what makes them learn the same."""
-    classes: dict[str, tuple[int, int]] = {}
-    for case in cases:
-        if case.teacher is not None:
-            mind = case.settings.mind.model_dump_json(exclude={"agent"})
-            mark = mind + case.settings.robot.model_dump_json() + case.teacher.model_dump_json()
-            classes[mark] = case.teacher.robots, case.teacher.steps
-    return classes
+def _tables(plan: Plan, lives: pa.Table) -> float:
+    """Return the room of the tables of lives and of networks, each in as many files as parts."""
+    parts = sum(numbering.parts for numbering in plan.numbering.values())
+    room = parts * _size(lives.slice(0, 0)) + _bytes_of_a_row(lives) * plan.numbering["lives"].total
+    for each in plan.classes:
+        features = len(world_of(each.teacher.world).feature_names)
+        weights = len(each.mind.behaviours) * each.mind.weight_count(features)
+        room += each.robots * weights * np.float64().nbytes
+    return room
 
 
-def _traces(record: Record | None, lifespan: Range, cases: Sequence[Case]) -> Range:
+def _traces(plan: Plan, lifespan: Range) -> Range:
     """Return the room of the traces of lives of so many steps."""
+    record = plan.study.record
     recording = Recording.parse(record.what) if record is not None else None
     if record is None or recording is None:
         return Range(0.0, 0.0)
     rows = lifespan * (1.0 / recording.every)
     if recording.last is not None:
         rows = Range(*(min(recording.last, steps) for steps in lifespan))
-    setting = _setting(cases[0])
-    life = live(
-        setting.mind,
-        setting.world,
-        robot=setting.robot,
-        seed=cases[0].seed,
-        life=cases[0].first,
-        steps=TRACED,
-        record="all",
-    )
-    assert life.trace is not None
-    return rows * (record.lives * len(cases) * _bytes_of_a_row(life.trace))
+    case, setting = plan.lived[0], _setting(plan, 0)
+    states, present = setting.begin(case.seed, np.array([case.first], np.uint64))
+    parts = lived(setting, states, present, case.seed, case.first, TRACED, Recording())
+    trace = pa.concat_tables(table(part, setting.mind, setting.world) for part in parts)
+    return rows * (record.lives * len(plan.lived) * _bytes_of_a_row(trace.unify_dictionaries()))
 
 
 def _bytes_of_a_row(table: pa.Table) -> float:

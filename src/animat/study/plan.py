@@ -14,15 +14,16 @@ from functools import lru_cache
 from threading import Lock
 from typing import Any, NamedTuple
 
+import numpy as np
 import pyarrow as pa
 
 from animat.life.setting import Setting, bring_together
 from animat.mind.functions import Functions
 from animat.mind.mind import Mind
+from animat.mind.networks import Networks
 from animat.settings import SettingsError, validated
 from animat.study.design import Case, cases
 from animat.study.identity import Lived, identity
-from animat.study.livable import untaught
 from animat.study.numbering import KINDS, Kind, Numbering, Part, Piece, part_size
 from animat.study.settings import Teacher, WorldChoice
 from animat.study.study import Study
@@ -205,6 +206,13 @@ def _world(choice: str) -> World:
 def _world_files(case: Case) -> list[str]:
     choices = [case.settings.world, *([case.teacher.world] if case.teacher else [])]
     return [choice.layout for choice in choices if choice.layout.endswith(".toml")]
+
+
+def untaught(mind: Mind, school: World) -> Networks:
+    """Return networks of the form that robots with this mind learn in this world."""
+    shape = len(mind.behaviours), mind.weight_count(len(school.feature_names))
+    hidden = mind.learning.hidden_units
+    return Networks(tuple(mind.behaviours), school.feature_names, hidden, np.zeros(shape))
 
 
 def _alike(values: list[Any]) -> pa.Array:
