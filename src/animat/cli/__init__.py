@@ -7,6 +7,7 @@ each mistake; `--debug` shows where it came from.
 from animat.cli import check as check
 from animat.cli import export as export
 from animat.cli import life as life
+from animat.cli import multiverse as multiverse
 from animat.cli import new as new
 from animat.cli import replay as replay
 from animat.cli import report as report
