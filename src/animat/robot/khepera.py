@@ -170,7 +170,8 @@ class Khepera(Settings):
         robot["sensor_y"] = [sensor.y for sensor in self.sensors]
         looking = np.array([sensor.direction for sensor in self.sensors])
         turn_to(looking, robot["sensor_sine"], robot["sensor_cosine"])
-        turn_to(45.0 * np.arange(RING_POINTS), robot["ring_y"], robot["ring_x"])
+        around = np.array([45.0 * point for point in range(RING_POINTS)])
+        turn_to(around, robot["ring_y"], robot["ring_x"])
         robot["ring_x"] *= self.ring_radius
         robot["ring_y"] *= self.ring_radius
         return cast(np.record, robot[()])
