@@ -3,7 +3,7 @@
 import pytest
 
 from animat.life.life import live
-from animat.life.lives import CHUNK, live_many
+from animat.life.lives import chunk_size, live_many
 from animat.life.setting import LifeError
 from animat.mind.mind import Mind
 from animat.robot.khepera import Khepera
@@ -45,7 +45,7 @@ def test_each_knowing_robot_has_the_networks_of_one_that_learnt(reproduced):
 
 def test_more_lives_than_a_chunk_are_told_and_counted(reproduced):
     told = []
-    lives = CHUNK + 3
+    lives = chunk_size(50) + 3
     table = compare(
         Mind(death=False),
         reproduced.worlds,
