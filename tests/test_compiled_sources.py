@@ -14,12 +14,14 @@ import math
 import pkgutil
 import textwrap
 from collections.abc import Iterator
+from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
 
+import animat
 from animat.numerics.compiled import COMPILING_LAYERS, compiled
 
 STATEMENTS = (
@@ -34,7 +36,7 @@ EXPRESSIONS = (
 )
 """What the source of a compiled function is made of. Everything else is refused."""
 
-BUILT_INS = {"range", "len", "min", "max", "abs", "int", "float", "bool"}
+BUILT_INS = {"range", "len", "min", "max", "abs", "round", "int", "float", "bool"}
 METHODS = {"view"}
 """What may be called of a number: to take its bits for another number."""
 
@@ -44,6 +46,13 @@ EXACT: dict[str, set[str]] = {
 }
 """What may be taken from these modules: numbers, types of numbers, and functions that IEEE 754
 rounds in one way only."""
+
+INEXACT = {
+    *("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "arcsin", "arccos", "arctan"),
+    *("arctan2", "sinh", "cosh", "tanh", "exp", "exp2", "expm1", "log", "log2", "log10", "log1p"),
+    *("pow", "power", "float_power", "hypot", "cbrt", "gamma", "lgamma", "erf", "erfc", "random"),
+}
+"""What systems and processors round differently, or draw."""
 
 PLAIN = (bool, int, float, np.generic)
 
@@ -166,6 +175,36 @@ def test_there_is_something_to_look_at():
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_compiled_function_is_made_of_numbers_and_loops(name):
     assert faults(FUNCTIONS[name]) == []
+
+
+def library_calls(source: str) -> list[str]:
+    """Return what a module takes of INEXACT from the libraries, compiled or not."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Attribute) and node.attr in INEXACT:
+            if ast.unparse(node.value) in ("math", "np", "numpy", "cmath"):
+                found.append(ast.unparse(node))
+        elif isinstance(node, ast.ImportFrom) and node.module in ("math", "numpy", "random"):
+            found += [alias.name for alias in node.names if alias.name in INEXACT]
+        elif isinstance(node, ast.Import):
+            found += [alias.name for alias in node.names if alias.name == "random"]
+    return found
+
+
+@pytest.mark.parametrize("layer", COMPILING_LAYERS)
+def test_what_a_life_is_made_of_takes_no_inexact_function_from_a_library(layer):
+    """Nor where worlds, robots and minds are made ready, which nothing compiles."""
+    modules = sorted((Path(animat.__file__).parent / layer).rglob("*.py"))
+    assert modules
+    for path in modules:
+        assert library_calls(path.read_text(encoding="utf-8")) == [], path.name
+
+
+def test_an_inexact_function_is_found():
+    for line in ("math.cos(1)", "x = np.exp", "from math import sin", "import random"):
+        assert len(library_calls(line)) == 1, line
+    for line in ("math.sqrt(2)", "streams.random(1)", "from math import sqrt, pi", "np.round(x)"):
+        assert library_calls(line) == [], line
 
 
 ARRAY = np.arange(3.0)

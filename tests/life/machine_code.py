@@ -25,7 +25,7 @@ WRAPPER = re.compile(r"_ZN7cpython|cfunc\.")
 and are no part of a step."""
 
 EXACT = re.compile(
-    r"llvm\.(fabs|sqrt|floor|ceil|trunc|copysign|[su](min|max)|abs|fsh[lr]|ct(lz|tz|pop)|bswap"
+    r"llvm\.(fabs|sqrt|floor|ceil|trunc|rint|copysign|[su](min|max)|abs|fsh[lr]|ct(lz|tz|pop)|bswap"
     r"|[us](add|sub)\.sat|mem(set|cpy|move)|masked\.(load|store|gather|scatter)"
     r"|vector\.reduce\.(add|mul|and|or|xor|[su]min|[su]max)|lifetime\.\w+|assume)\."
 )

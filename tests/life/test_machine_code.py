@@ -47,7 +47,8 @@ def codes() -> dict[str, list[str]]:
     likelihoods(setting, states)
     for mind in (Mind(), Mind(selector=f"{EXAMPLE}:product")):
         for record in (None, "all"):
-            live(mind, world, steps=10, record=record)
+            life = live(mind, world, steps=10, record=record)
+            life.networks.likelihoods(dict.fromkeys(world.feature_names, 0.0))
     return {
         name: machine_code.intermediate_codes(kernel)
         for name, kernel in machine_code.kernels().items()
