@@ -99,8 +99,9 @@ def _offences_of(line: str, own: set[str]) -> Iterator[str]:
             if name not in own and not EXACT.match(name):
                 yield f"calls {name}"
             line = line.replace(callee[0], "", 1)
-    if LOOSE.search(" ".join(words[:4])):
-        yield f"may be rearranged: {' '.join(words[:4])}"
+    loose = LOOSE.search(" ".join(words[:8]))
+    if loose:
+        yield f"may be rearranged: {words[0]} {loose[0]}"
     if words[0] in ("landingpad", "resume"):
         yield "handles exceptions"
     if "inttoptr (" in line:

@@ -76,7 +76,7 @@ def test_no_kernel_does_what_another_processor_might_do_otherwise(codes):
 def test_a_step_compiles_for_a_gpu(name, codes):
     """Down to the code that NVIDIA's driver takes, with nothing left to link."""
     for code in codes[name]:
-        assert machine_code.offences(code) == []  # of which some would be the end of the compiler
+        assert machine_code.offences(code) == []  # some would be the end of the compiler
         made = machine_code.for_processor(code, "nvptx64-nvidia-cuda", "sm_70")
         assert made.count("mul.rn.f64") > 500
         assert ".extern" not in made
@@ -87,6 +87,7 @@ def test_a_step_compiles_for_a_gpu(name, codes):
 def test_nothing_is_fused_on_an_arm(name, codes):
     """Of which every one could."""
     for code in codes[name]:
+        assert machine_code.offences(code) == []
         made = machine_code.for_processor(code, "aarch64-unknown-linux-gnu", "neoverse-n1")
         assert len(re.findall(r"^\s*fmul\b", made, re.MULTILINE)) > 500
         assert not re.search(r"^\s*f(?:n?m(?:add|sub)|ml[as])\b", made, re.MULTILINE)
