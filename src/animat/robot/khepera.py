@@ -139,7 +139,7 @@ class Khepera(Settings):
                 f"{self.ring_radius / 2:g} mm, noise included"
             )
         for number, sensor in enumerate(self.sensors):
-            if math.hypot(sensor.x, sensor.y) > self.ring_radius:
+            if math.sqrt(sensor.x * sensor.x + sensor.y * sensor.y) > self.ring_radius:
                 problems.append(
                     f"sensor {number} at ({sensor.x:g}, {sensor.y:g}) mm lies outside the "
                     f"collision ring: it must be at most {self.ring_radius:g} mm from the centre"
