@@ -147,12 +147,12 @@ def test_the_robot_can_pass_everywhere_and_starts_clear(count, seed):
 
 @pytest.mark.parametrize("start", [with_numpy.start, with_numba.start, with_animat.wander_linear])
 def test_robots_wander_and_touch_nothing(start):
-    placed = work.obstacles(20)
-    robots = start(placed, 8, 3)
+    placed = work.obstacles(30)
+    robots = start(placed, 32, 3)
     shares = []
     been = set()
-    for _ in range(60):
-        robots.step(25)
+    for _ in range(400):
+        robots.step(5)
         places = positions(robots)
         assert np.all((places >= work.RADIUS) & (places <= work.SIDE - work.RADIUS))
         apart = np.linalg.norm(places[:, None] - np.array(placed), axis=2)
@@ -161,7 +161,7 @@ def test_robots_wander_and_touch_nothing(start):
         shares.append(robots.turning())
         been |= {(n, *cell) for n, cell in enumerate((places // 100).astype(int).tolist())}
     assert 0.02 < np.mean(shares) < 0.5
-    assert len(been) > 80
+    assert len(been) > 300
 
 
 def positions(robots) -> np.ndarray:
