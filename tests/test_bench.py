@@ -164,6 +164,22 @@ def test_robots_wander_and_touch_nothing(start):
     assert len(been) > 300
 
 
+@given(st.floats(-math.pi, math.pi), st.floats(-1.4, 1.4))
+def test_a_robot_is_stopped_by_what_it_touches(bearing, aside):
+    """Both hand-written loops stop a robot that goes at an obstacle, and let it go away."""
+    away = work.RADIUS + work.OBSTACLE_RADIUS + 0.1
+    x, y = 500.0 + away * math.cos(bearing), 500.0 + away * math.sin(bearing)
+    for heading, stopped in ((bearing + math.pi + aside, True), (bearing + aside, False)):
+        by_numba = with_numba.start([(500.0, 500.0)], 1, 1)
+        by_numba.states[0, :3] = x, y, heading
+        with_numba.move(by_numba.states[0], work.SPEED, 0.0, by_numba.obstacles)
+        by_numpy = with_numpy.start([(500.0, 500.0)], 1, 1)
+        by_numpy.pose[0] = x, y, heading
+        by_numpy.move(np.array([work.SPEED]), np.array([0.0]))
+        for robots in (by_numba, by_numpy):
+            assert np.array_equal(positions(robots)[0], [x, y]) == stopped
+
+
 def positions(robots) -> np.ndarray:
     """Return where robots are [R, 2], in mm."""
     if hasattr(robots, "pose"):
