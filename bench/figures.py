@@ -10,6 +10,8 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import shlex
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -18,6 +20,8 @@ from animat.study.provenance import provenance
 
 Key = TypeVar("Key")
 Taken = TypeVar("Taken")
+
+ROOT = Path(__file__).parents[1]
 
 LARGE = 1000.0
 """From here on figures are shown as whole numbers, of three digits that count."""
@@ -81,7 +85,7 @@ def written(table: Table, markdown: bool) -> str:
     """Return a table with its title and note, as Markdown or aligned for a terminal."""
     columns = list(table.rows[0])
     lines = [columns, *([cell(row[column]) for column in columns] for row in table.rows)]
-    numbers = [isinstance(table.rows[0][column], int | float) for column in columns]
+    numbers = [type(table.rows[0][column]) in (int, float) for column in columns]
     if markdown:
         bars = ["| " + " | ".join(line) + " |" for line in lines]
         rule = "|" + "|".join("---:" if number else "---" for number in numbers) + "|"
@@ -128,7 +132,7 @@ def add_output(parser: argparse.ArgumentParser) -> None:
 
 def opened(markdown: bool) -> dict[str, Any]:
     """Print on what machine, with what and by which command this is measured, and return it."""
-    made = provenance()
+    made = provenance() | {"command": command()}
     if hasattr(os, "getloadavg"):
         made["load at the start"] = [round(load, 2) for load in os.getloadavg()]
     lines = []
@@ -139,6 +143,18 @@ def opened(markdown: bool) -> dict[str, Any]:
         lines.append(f"{'* ' * markdown}{key}: {told}")
     print("\n".join(lines) + "\n", flush=True)
     return made
+
+
+def command() -> str:
+    """Return what to type in the root of the project to measure this again."""
+    program = Path(sys.argv[0]).resolve()
+    arguments = sys.argv[1:]
+    if "--json" in arguments:
+        at = arguments.index("--json")
+        del arguments[at : at + 2]
+    if program.is_relative_to(ROOT):
+        program = program.relative_to(ROOT)
+    return shlex.join(["python", str(program), *arguments])
 
 
 def tell(table: Table, made: dict[str, Any], markdown: bool) -> None:

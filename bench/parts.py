@@ -170,7 +170,8 @@ def of_a_step(repeat: int, tiny: bool, rates: dict[str, float]) -> Table:
         "World 1, BLIND, michel1996; nanoseconds of the processor, the least of "
         f"{repeat} turns. Rows with a dash are contained in the row above them, sine and cosine in "
         "motion and in sensing in the light. The floors of the rows that make up a step come to "
-        f"{figures.cell(floors)} ns.",
+        f"{figures.cell(floors)} ns. What is done once more overlaps with the step, and is the "
+        "difference of two times that are large beside it: a few ns of it are noise.",
     )
 
 

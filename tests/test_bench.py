@@ -147,12 +147,12 @@ def test_the_robot_can_pass_everywhere_and_starts_clear(count, seed):
 
 @pytest.mark.parametrize("start", [with_numpy.start, with_numba.start, with_animat.wander_linear])
 def test_robots_wander_and_touch_nothing(start):
-    placed = work.obstacles(20)
-    robots = start(placed, 8, 3)
+    placed = work.obstacles(30)
+    robots = start(placed, 32, 3)
     shares = []
     been = set()
-    for _ in range(60):
-        robots.step(25)
+    for _ in range(400):
+        robots.step(5)
         places = positions(robots)
         assert np.all((places >= work.RADIUS) & (places <= work.SIDE - work.RADIUS))
         apart = np.linalg.norm(places[:, None] - np.array(placed), axis=2)
@@ -161,7 +161,23 @@ def test_robots_wander_and_touch_nothing(start):
         shares.append(robots.turning())
         been |= {(n, *cell) for n, cell in enumerate((places // 100).astype(int).tolist())}
     assert 0.02 < np.mean(shares) < 0.5
-    assert len(been) > 80
+    assert len(been) > 300
+
+
+@given(st.floats(-math.pi, math.pi), st.floats(-1.4, 1.4))
+def test_a_robot_is_stopped_by_what_it_touches(bearing, aside):
+    """Both hand-written loops stop a robot that goes at an obstacle, and let it go away."""
+    away = work.RADIUS + work.OBSTACLE_RADIUS + 0.1
+    x, y = 500.0 + away * math.cos(bearing), 500.0 + away * math.sin(bearing)
+    for heading, stopped in ((bearing + math.pi + aside, True), (bearing + aside, False)):
+        by_numba = with_numba.start([(500.0, 500.0)], 1, 1)
+        by_numba.states[0, :3] = x, y, heading
+        with_numba.move(by_numba.states[0], work.SPEED, 0.0, by_numba.obstacles)
+        by_numpy = with_numpy.start([(500.0, 500.0)], 1, 1)
+        by_numpy.pose[0] = x, y, heading
+        by_numpy.move(np.array([work.SPEED]), np.array([0.0]))
+        for robots in (by_numba, by_numpy):
+            assert np.array_equal(positions(robots)[0], [x, y]) == stopped
 
 
 def positions(robots) -> np.ndarray:

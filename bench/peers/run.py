@@ -144,7 +144,11 @@ def ratios(
             row[f"{count} obstacles, one robot"] = best(ours, count, 1) / best(turns, count, 1)
             row[f"{count} obstacles, best number"] = most[0] / most[1]
         rows.append(row)
-    return Table(f"How many times as many steps {name_of_ours}, makes", rows)
+    return Table(
+        f"How many times as many steps {name_of_ours}, makes",
+        rows,
+        "The best number of robots at once is that of each simulator, for that many obstacles.",
+    )
 
 
 def left_out(found: dict[str, list[dict[str, Any]]], wrong: dict[str, str]) -> Table:
