@@ -22,6 +22,7 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Timer
 from typing import Any
 
 FLAGS = (
@@ -35,7 +36,7 @@ FLAGS = (
 SIZES = {"desk": (1280, 900), "phone": (375, 800)}
 
 PATIENCE = 60.0
-"""Seconds in which a page must have loaded."""
+"""Seconds in which a page must have been looked at."""
 
 SEEN = """({
   wide: document.documentElement.scrollWidth - window.innerWidth,
@@ -80,7 +81,7 @@ class Browser:
         text = bytearray()
         while (byte := self.back.read(1)) != b"\0":
             if not byte:
-                raise RuntimeError("the browser is gone")
+                raise RuntimeError("the browser is gone, or took too long")
             text += byte
         return json.loads(text)
 
@@ -106,6 +107,17 @@ def browser(program: str) -> Iterator[Browser]:
         finally:
             process.terminate()
             process.wait(timeout=PATIENCE)
+
+
+@contextmanager
+def ended_after(seconds: float, process: subprocess.Popen) -> Iterator[None]:
+    """End a browser that takes too long; whoever listens to it is told that it is gone."""
+    timer = Timer(seconds, process.kill)
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 def complaints(one: Browser, page: Path, out: Path | None) -> list[str]:
@@ -183,7 +195,8 @@ def main() -> None:
     wrong = 0
     with browser(program) as one:
         for page in given.pages:
-            found = complaints(one, page.resolve(), given.out)
+            with ended_after(PATIENCE, one.process):
+                found = complaints(one, page.resolve(), given.out)
             wrong += len(found)
             for each in found:
                 print(f"{page}: {each}")

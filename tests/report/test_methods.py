@@ -17,10 +17,16 @@ def test_only_what_was_done_is_told():
     assert "Kruskal" not in text
     assert "Spearman" not in text
     assert "2 tests of factors" in text
+    assert "within single combinations by the log-rank test" in text
     assert "6 comparisons" in text
     assert "SciPy 1.2.3" in text
     assert "sets of lives" in text
     assert "every life ended" in text.lower()
+
+
+def test_of_a_single_factor_the_test_has_no_strata():
+    text = said([({"agent": name}, 300.0) for name in ("BLIND", "AF")], 25, ["agent"])
+    assert "were tested by the log-rank test. Effect" in text
 
 
 def test_a_range_is_told_as_it_was_tested():

@@ -30,7 +30,8 @@ def statistics_words(found: Findings, scipy: str) -> list[str]:
         f"Intervals are at {LEVEL:.0%}. Those of means, medians, rates and ratios are bootstrap"
         f" intervals of {RESAMPLES:,} resamples of {units}: BCa for means and ratios, percentiles"
         f" for medians; of more than {BOOTSTRAPPED_AT_MOST:,} such units, means are drawn from"
-        " their joint normal law. Shares of the ways to die have Wilson's interval.",
+        " their joint normal law. Shares of the ways to die have Wilson's interval, which"
+        " takes lives as independent.",
     ]
     if found.deaths and found.margins:
         told.append(_comparisons_words(found))
@@ -39,13 +40,16 @@ def statistics_words(found: Findings, scipy: str) -> list[str]:
 
 
 def _comparisons_words(found: Findings) -> str:
-    names = [margin.test.name for margin in found.margins]
-    names += [one.test.name for margin in found.margins for one in margin.comparisons]
-    tests = [WORDS[name] for name in dict.fromkeys(names)]
+    tests = dict.fromkeys(margin.test.name for margin in found.margins)
+    comparisons = [one for margin in found.margins for one in margin.comparisons]
+    tests |= dict.fromkeys(one.test.name for one in comparisons if not one.where)
+    told = ", and by ".join(WORDS[name] for name in tests)
+    if any(one.where for one in comparisons):
+        told += ", and within single combinations by the log-rank test"
     return (
-        f"Factors were tested by {'; '.join(tests)}. Effect sizes are the ratio of restricted mean"
-        " lifespans, and Cliff's delta (the chance that a life of one group outlasts one of the"
-        " other, less the chance of the contrary; the rank-biserial correlation) with DeLong's"
+        f"Factors and their levels were tested by {told}. Effect sizes are the ratio of restricted"
+        " mean lifespans, and Cliff's delta (the chance that a life of one group outlasts one of"
+        " the other, less the chance of the contrary; the rank-biserial correlation) with DeLong's"
         " interval. Hazard ratios are not given, as hazards are not proportional where curves"
         f" cross. p values were corrected by Holm's method, for the {len(found.factors_p)} tests of"
         f" factors and for the {len(found.levels_p)} comparisons of levels each."

@@ -166,9 +166,10 @@ def _networks(minds: Sequence[Mind]) -> list[str]:
     def of(read: Callable[[Mind], Any]) -> str:
         return words(map(read, knowing))
 
+    estimator = of(lambda m: str(m.learning.estimator).replace("_", " "))
     biases = words("with" if mind.learning.biases else "without" for mind in knowing)
     return [
-        f"Affordances: a network for each behaviour ({of(lambda m: str(m.learning.estimator))},"
+        f"Affordances: a network for each behaviour ({estimator},"
         f" {of(lambda m: m.learning.hidden_units)} hidden units, {biases} biases), trained by"
         f" {of(lambda m: str(m.learning.learner)).replace('_', '-')} at rate"
         f" {of(lambda m: m.learning.rate)} for {of(lambda m: m.learning.cycles)} cycles after each"
