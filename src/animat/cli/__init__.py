@@ -14,6 +14,7 @@ from animat.cli import report as report
 from animat.cli import reproduce as reproduce
 from animat.cli import run as run
 from animat.cli import schema as schema
+from animat.cli import sensitivity as sensitivity
 from animat.cli import status as status
 from animat.cli import verify as verify
 from animat.cli.app import main as main

@@ -10,13 +10,22 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from animat.cli.app import DONE, FAILED, INTERRUPTED, app
-from animat.cli.options import Debug, compiling_told
+from animat.cli.check import Set
+from animat.cli.options import Debug, Out, Quick, Threads, compiling_told
 
 if TYPE_CHECKING:
     from animat.study.multiverse.run import Multiverse
+    from animat.study.study import Study
 
-QUICK = ("lives=10", "steps=5_000", "teacher.robots=3", "teacher.steps=30_000")
-QUICK_UNIVERSES = 60
+QUICK = (
+    "lives=10",
+    "steps=5_000",
+    "teacher.robots=3",
+    "teacher.steps=30_000",
+    "design.sample.points=128",
+)
+
+CONFIRMED_QUICKLY = 60
 
 
 @app.command()
@@ -30,16 +39,10 @@ def multiverse(
     full: Annotated[
         bool, typer.Option("--full", help="Every combination of readings: for a cluster.")
     ] = False,
-    out: Annotated[
-        Path | None, typer.Option(help="The directory; results/NAME unless given.")
-    ] = None,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="Another value for a key: KEY=VALUE.")
-    ] = None,
-    threads: Annotated[
-        int | None, typer.Option(help="Threads; as many as cores unless given.", min=1)
-    ] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="Small, for a look.")] = False,
+    out: Out = None,
+    changes: Set = None,
+    threads: Threads = None,
+    quick: Quick = False,
     debug: Debug = False,
 ) -> int:
     """Live every reading of the paper, and say which of them its claims need.
@@ -58,13 +61,14 @@ def multiverse(
     from animat.study.store import StoreError
     from animat.study.study import read_study
 
-    asked = read_study(study_file(study), [*(QUICK if quick else ()), *(set_ or ())])
+    asked = read_study(study_file(study), [*(QUICK if quick else ()), *(changes or ())])
     readings_of(asked)
-    wanted = universes or (QUICK_UNIVERSES if quick else None)
-    if wanted is not None:
-        asked = of_size(asked, wanted)
+    if universes is not None:
+        asked = of_size(asked, universes)
     directory = out or Path("results") / asked.name
-    size = Size(confirming=QUICK_UNIVERSES, longer=0) if quick else Size()
+    size = Size(confirming=CONFIRMED_QUICKLY, longer=0) if quick else Size()
+    if not full:
+        _say_what(asked, directory)
     started = time.monotonic()
     try:
         with compiling_told(), telling() as tell, workers_of(threads) as workers:
@@ -84,17 +88,32 @@ def multiverse(
     return DONE
 
 
+def _say_what(asked: Study, directory: Path) -> None:
+    from animat.report.multiverse.universes import CELLS
+    from animat.study.design import excluded
+    from animat.study.multiverse.designs import count
+    from animat.study.multiverse.universes import readings_of
+
+    print(
+        f"{asked.name}: {count(asked):,} universes of {len(readings_of(asked))} readings,"
+        f" {asked.lives:,} lives a cell; results in {directory}"
+    )
+    for rule in excluded(asked):
+        print(f"left out, {rule.count // len(CELLS):,} universes: {rule.why}")
+    sys.stdout.flush()
+
+
 def _print(found: Multiverse) -> None:
-    """Print what was left out, the shares of the claims, and the smallest sets."""
+    """Print the shares of the claims, and the smallest sets."""
     from rich.console import Console
     from rich.table import Table
 
     from animat.cli.reproduce import PRINTED_WIDTH
-    from animat.study.multiverse.tables import left_out_table, shares_table, smallest_table
+    from animat.study.multiverse.tables import shares_table, smallest_table
 
     console = Console(width=None if sys.stdout.isatty() else PRINTED_WIDTH)
-    for count, why in left_out_table(found).rows:
-        print(f"left out, {count} universes: {why}")
+    if found.missing:
+        print(f"{found.missing:,} universes are left out: a life or a robot of them failed")
     for block in (shares_table(found), smallest_table(found)):
         table = Table(*block.columns)
         for row in block.rows:

@@ -16,7 +16,11 @@ from animat.study.words import LISTED_AT_MOST, listed, word, words
 
 WORLDS_AT_MOST = 3
 
-METHODS = {"sobol": "Sobol's sequence", "latin_hypercube": "a Latin hypercube"}
+METHODS = {
+    "sobol": "Sobol's sequence",
+    "latin_hypercube": "a Latin hypercube",
+    "saltelli": "Saltelli's scheme",
+}
 
 
 def asked_section(study: Study, cases: Sequence[Case]) -> Section:
@@ -98,7 +102,7 @@ def _factors(study: Study) -> list[str]:
         sample = design.sample
         over = "; ".join(f"{name} {_levels(levels)}" for name, levels in sample.over.items())
         told.append(
-            f"{sample.points:,} points spread by {METHODS[sample.method]} (seed {sample.seed}) over"
+            f"{sample.size:,} points spread by {METHODS[sample.method]} (seed {sample.seed}) over"
             f" {over}"
         )
     if design.cases:

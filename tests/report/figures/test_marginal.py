@@ -42,3 +42,15 @@ def test_factors_have_their_intervals_on_a_logarithmic_axis(effects, legible):
     np.testing.assert_allclose(unsure.get_segments()[0], [[0.945, 1], [1.155, 1]])
     assert tuple(sure.get_color()[0]) == to_rgba(BLUE)
     legible(fig)
+
+
+def test_what_could_not_be_compared_is_left_blank(effects, legible):
+    nothing = [
+        {**row, "effect": np.nan, "low": np.nan, "high": np.nan} for row in effects.to_pylist()
+    ]
+    wide = [{**row, "low": row["effect"] / 1e9, "high": 1e9} for row in effects.to_pylist()]
+    for rows in (nothing, wide):
+        table = pa.Table.from_pylist(rows)
+        legible(factors_figure(table, GAINS))
+        legible(points_figure(table, ["C1"]))
+    assert not points_figure(pa.Table.from_pylist(nothing), ["C1"]).axes[0].texts

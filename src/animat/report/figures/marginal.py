@@ -13,6 +13,7 @@ from animat.report.figures.style import BLACK, BLUE, GREY, VERMILLION, new_figur
 _POINTS = LinearSegmentedColormap.from_list("points", [VERMILLION, "white", BLUE])
 _DARK = 0.6
 _TICKS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
+_FARTHEST = 30.0  # factors beyond it, of a few universes, are not worth the room
 _FINE_TICKS = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.4)
 
 
@@ -68,8 +69,8 @@ def factors_figure(effects: pa.Table, outcomes: Mapping[str, str]) -> Figure:
             ax.hlines(at[chosen], low[chosen], high[chosen], color=colour, lw=1.6)
             ax.plot(value[chosen], at[chosen], "o", color=colour, ms=4)
         ax.set_xscale("log")
-        ends = np.nanmin(low) / 1.1, np.nanmax(high) * 1.1
-        ax.set_xlim(min(ends[0], 0.9), max(ends[1], 1.1))
+        ends = np.nanmin(np.append(low, 0.95)) / 1.1, np.nanmax(np.append(high, 1.05)) * 1.1
+        ax.set_xlim(max(ends[0], 1.0 / _FARTHEST), min(ends[1], _FARTHEST))
         ax.xaxis.set_major_locator(FixedLocator(_ticks(*ax.get_xlim())))
         ax.xaxis.set_major_formatter(FuncFormatter(lambda factor, _: f"{factor:g}"))
         ax.xaxis.set_minor_locator(NullLocator())

@@ -52,7 +52,7 @@ def judge_universes(
     lives; every universe has the four cells with the same lives. `likelihoods` has `universe`,
     `robot`, `network`, `object`, `likelihood`, `afforded`: of every universe the same robots,
     networks and objects. Columns, beside `universe`: the names of `EFFECTS` and `CLAIMS`, and for
-    each cell `mean_`, `alive_` (share at the cap) and `success_` (share of acts; NaN if nobody
+    each cell `mean_`, `alive_` (share at the cap) and `success_` (share of acts; null if nobody
     acted), followed by world and agent. Raises ValueError for a universe that lacks something.
     """
     numbers, order = _in_order(lives)
@@ -81,7 +81,8 @@ def judge_universes(
     for number, (world, agent) in enumerate(CELLS):
         columns[f"mean_{world}_{agent}"] = spans[:, number].mean(axis=1)
         columns[f"alive_{world}_{agent}"] = alive[:, number].mean(axis=1)
-        columns[f"success_{world}_{agent}"] = rates[:, number]
+        rate = rates[:, number]
+        columns[f"success_{world}_{agent}"] = pa.array(rate, mask=np.isnan(rate))
     return pa.table(columns)
 
 

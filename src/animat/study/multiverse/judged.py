@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from animat.report.estimates import RESAMPLES
 from animat.report.multiverse.universes import CELLS, complete, deaths, judge_universes
-from animat.study.multiverse.universes import Universes, universes_of
+from animat.study.multiverse.universes import Reading, Universes, universes_of
 from animat.study.plan import Class, Plan, world_of
 from animat.study.results import Results
 
@@ -41,12 +41,16 @@ class Judged(NamedTuple):
 def judge(
     plan: Plan,
     results: Results,
+    readings: tuple[Reading, ...] | None = None,
     *,
     resamples: int = RESAMPLES,
     tell: Callable[[int], None] = lambda universes: None,
 ) -> Judged:
-    """Judge the universes of a study that was lived; `tell` is called with how many more are."""
-    universes = universes_of(plan.study, results.cases)
+    """Judge the universes of a study that was lived, by `readings` as in `universes_of`.
+
+    `tell` is called with how many more are.
+    """
+    universes = universes_of(plan.study, results.cases, readings)
     likelihoods = _Likelihoods(plan, results)
     tables, ways = [], []
     for first in range(0, len(universes.values), AT_A_TIME):

@@ -26,7 +26,7 @@ from animat.settings import SettingsError
 from animat.study.design import Excluded, excluded
 from animat.study.multiverse.designs import fresh, longer, portions
 from animat.study.multiverse.judged import Judged, judge
-from animat.study.multiverse.universes import Universes
+from animat.study.multiverse.universes import Reading, Universes, readings_of
 from animat.study.plan import Plan
 from animat.study.results import open as open_results
 from animat.study.run import Workers, run
@@ -87,8 +87,10 @@ def run_multiverse(
     """
     if study.design.sample is None:
         raise SettingsError(f"{study.name}: a multiverse needs a [design.sample]")
+    readings = readings_of(study)
     parts = [
-        _lived(Plan(one), out / name, name, workers, tell) for name, one in _studies(study, full)
+        _lived(Plan(one), readings, out / name, name, workers, tell)
+        for name, one in _studies(study, full)
     ]
     judged = _together(parts)
     if not judged.table.num_rows:
@@ -132,7 +134,14 @@ def _studies(study: Study, full: bool) -> Iterator[tuple[str, Study]]:
         yield f"universes-{portion.name}", portion.study
 
 
-def _lived(plan: Plan, directory: Path, stage: str, workers: Workers, tell: Telling) -> Judged:
+def _lived(
+    plan: Plan,
+    readings: tuple[Reading, ...],
+    directory: Path,
+    stage: str,
+    workers: Workers,
+    tell: Telling,
+) -> Judged:
     """Live what a study lacks, and judge its universes."""
 
     def tell_stage(task: str, done: int, total: int, note: str = "") -> None:
@@ -145,6 +154,7 @@ def _lived(plan: Plan, directory: Path, stage: str, workers: Workers, tell: Tell
     return judge(
         plan,
         open_results(directory),
+        readings,
         tell=lambda universes: tell_stage("Universes judged", universes, total),
     )
 
@@ -188,7 +198,9 @@ def _confirmed(
             allowed = {condition.reading: condition.values for condition in one.conditions}
             again = fresh(study, allowed, size.confirming)
             name = f"confirmation/{claim}"
-            lived[one.conditions] = _lived(Plan(again), out / name, name, workers, tell).table
+            lived[one.conditions] = _lived(
+                Plan(again), readings_of(study), out / name, name, workers, tell
+            ).table
         told[claim] = confirm(one, lived[one.conditions])
     return told
 
@@ -200,7 +212,7 @@ def _late(
     if not size.longer or size.late <= study.steps:
         return None
     plan = Plan(longer(study, size.longer, size.late))
-    late = _lived(plan, out / "longer", "longer", workers, tell)
+    late = _lived(plan, readings_of(study), out / "longer", "longer", workers, tell)
     same = len(late.universes.values)
     if late.universes.values != judged.universes.values[:same]:
         raise AssertionError("a sample does not begin like a larger one of the same seed")

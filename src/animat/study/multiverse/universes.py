@@ -96,12 +96,15 @@ def spread_factors(study: Study) -> dict[str, Any]:
     return grid | (study.design.sample.over if study.design.sample else {})
 
 
-def universes_of(study: Study, cases: pa.Table) -> Universes:
+def universes_of(
+    study: Study, cases: pa.Table, readings: tuple[Reading, ...] | None = None
+) -> Universes:
     """Return the universes of a study, in the order of its cases.
 
-    `cases` is the table of cases. Raises SettingsError for a study that is no multiverse.
+    `cases` is the table of cases; `readings` are those of the study unless given, as of a study
+    that has only some of their values. Raises SettingsError for a study that is no multiverse.
     """
-    readings = readings_of(study)
+    readings = readings or readings_of(study)
     factors = [name for name in spread_factors(study) if name in cases.column_names]
     number: dict[tuple[Any, ...], int] = {}
     values: list[tuple[str, ...]] = []
