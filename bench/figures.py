@@ -112,13 +112,21 @@ def run(
     `tables(repeat, tiny)` gives a function for every table, called one after another.
     """
     parser = argparse.ArgumentParser(description=(doc or "").partition("\n")[0])
-    parser.add_argument("--repeat", type=int, default=repeat, help="how often all is measured")
+    parser.add_argument("--repeat", type=times, default=repeat, help="how often all is measured")
     add_output(parser)
     options = parser.parse_args()
     made = opened(options.markdown)
     for measure in tables(options.repeat, options.tiny):
         tell(measure(), made, options.markdown)
     closed(made, options.json)
+
+
+def times(text: str) -> int:
+    """Read a whole number of at least 1, for argparse."""
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError("at least 1")
+    return number
 
 
 def add_output(parser: argparse.ArgumentParser) -> None:

@@ -170,7 +170,7 @@ def main() -> None:
     parser.add_argument("--venv", type=Path, required=True, help="where peers are installed")
     parser.add_argument("--only", nargs="+", choices=[peer.name for peer in PEERS])
     parser.add_argument("--obstacles", type=int, nargs="+", default=list(OBSTACLES))
-    parser.add_argument("--repeat", type=int, default=3, help="how often all is measured")
+    parser.add_argument("--repeat", type=figures.times, default=3, help="how often all is measured")
     figures.add_output(parser)
     options = parser.parse_args()
     options.seconds, options.samples = (0.01, 10) if options.tiny else (0.5, 2000)
