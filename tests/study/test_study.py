@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 import tomllib
 from pathlib import Path
@@ -10,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import animat.study
 from animat.life.life import live
 from animat.mind.mind import Mind
 from animat.settings import SettingsError, read_toml, validated
@@ -281,3 +283,12 @@ def test_a_study_of_python_is_one_that_can_be_written_down():
         Study(name="x", mind=Mind(agent="AF", networks=networks))
     with pytest.raises(ValueError, match=r"give it as FILE\.py:NAME"):
         Study(name="x", mind=Mind(selector=math.sin))
+
+
+def test_what_is_public_is_no_module_of_the_same_name():
+    for name in animat.study.__all__:
+        value = getattr(animat.study, name)
+        home = importlib.import_module(value.__module__)
+        assert getattr(home, name) is value
+    with pytest.raises(AttributeError, match="no attribute 'studi'"):
+        animat.study.studi  # noqa: B018  # pyright: ignore[reportAttributeAccessIssue]

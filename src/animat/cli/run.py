@@ -37,23 +37,21 @@ def run(
 ) -> int:
     """Live the lives of a study, or those that its results directory still lacks."""
     from animat.progress import telling
-    from animat.study.lock import HeldError
+    from animat.study.livable import check_livable
     from animat.study.plan import plan_of
     from animat.study.run import run as live
     from animat.study.run import threads as workers_of
     from animat.study.shipped import study_file
-    from animat.study.store import StoreError
+    from animat.study.store import MANIFEST
     from animat.study.study import read_study
 
     plan = plan_of(read_study(study_file(study), set_ or ()).to_toml())
     directory = out or Path("results") / plan.study.name
     _say_what(plan, directory)
-    try:
-        with compiling_told(), telling() as tell, workers_of(threads) as workers:
-            outcome = live(plan, directory, workers, tell)
-    except (HeldError, StoreError) as error:
-        print(f"animat: {error}", file=sys.stderr)
-        return FAILED
+    with compiling_told(), telling() as tell, workers_of(threads) as workers:
+        if not (directory / MANIFEST).exists():
+            check_livable(plan)
+        outcome = live(plan, directory, workers, tell)
     return _say_how_it_ended(outcome, directory)
 
 

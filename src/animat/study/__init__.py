@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from animat.study.results import Results
     from animat.study.results import open as open  # noqa: A004
     from animat.study.settings import CaseSettings, LifeSettings, Teacher, WorldChoice
-    from animat.study.shipped import shipped, study_file
+    from animat.study.shipped import study_file
     from animat.study.study import Study, read_study
 
 _HOMES = {
@@ -35,7 +35,6 @@ _HOMES = {
     "excluded": "animat.study.design",
     "open": "animat.study.results",
     "read_study": "animat.study.study",
-    "shipped": "animat.study.shipped",
     "study_file": "animat.study.shipped",
 }
 
@@ -53,7 +52,6 @@ __all__ = [
     "excluded",
     "open",
     "read_study",
-    "shipped",
     "study_file",
 ]
 

@@ -78,7 +78,7 @@ def _parts(lived: Lived, traced: bool) -> Iterator[bytes]:
     unread |= {"likelihood_threshold"} if record.judge == ACCEPT_ALL else set()
     yield json.dumps([ENGINE, lived.seed, lived.steps]).encode()
     yield from _fields(record, unread)
-    yield _told_of_robot(lived.robot)
+    yield from _fields(lived.robot.parameters(), set())
     yield _told_of_world(world)
     names = [mind.agent, *mind.resolved_variables(), *mind.drives, *mind.behaviours]
     yield json.dumps(names).encode()
@@ -96,11 +96,6 @@ def _parts(lived: Lived, traced: bool) -> Iterator[bytes]:
     if networks:
         untaught = [bool(mind.learning.biases), mind.learning.hidden_units]
         yield lived.taught.encode() if lived.taught else json.dumps(untaught).encode()
-
-
-@lru_cache(maxsize=64)
-def _told_of_robot(robot: Khepera) -> bytes:
-    return b" ".join(_fields(robot.parameters(), set()))
 
 
 @lru_cache(maxsize=64)

@@ -13,7 +13,7 @@ import os
 import socket
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
@@ -39,7 +39,11 @@ class Holder(NamedTuple):
         return f"process {self.pid} on {self.host}, since {self.since}"
 
 
-class HeldError(RuntimeError):
+class RunError(RuntimeError):
+    """Something that stops a run and is no mistake of its user; `str` says in a line what."""
+
+
+class HeldError(RunError):
     """Another process holds the directory; `str` says who."""
 
 
@@ -62,7 +66,8 @@ def hold(lock: Path) -> Iterator[Holder | None]:
         try:
             yield dead
         finally:
-            _say(file, "")
+            with suppress(OSError):
+                os.ftruncate(file, 0)
     finally:
         os.close(file)
 

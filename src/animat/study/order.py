@@ -1,5 +1,8 @@
 """Which part is lived next: any that is not finished, once those who teach in it have learnt.
 
+Robots learn when a life needs their networks; those that none needs any more, because only their
+own file was lost, come last.
+
 Parts are not taken in a row but at even steps through all of them. So what is finished is at any
 time a fair sample of all cases, from which the time that is left can be reckoned, and the first
 results tell something of every case.
@@ -9,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from animat.study.numbering import Part
 from animat.study.parts import classes_needed
@@ -44,11 +47,12 @@ class Order:
         while not self._teachers and len(self._waiting) < LOOKED_AHEAD:
             number = next(self._lives, None)
             if number is None:
-                return None
+                self._ask(range(len(self._plan.classes)))
+                break
             part = Part("lives", number)
             if self._finished(part):
                 continue
-            self._ask(part)
+            self._ask(classes_needed(self._plan, part))
             if self._ready(part):
                 return part
             self._waiting.append(part)
@@ -59,9 +63,9 @@ class Order:
         for missing in self._missing.values():
             missing.discard(part)
 
-    def _ask(self, part: Part) -> None:
-        """Put those who teach in a part onto the list, if they have not learnt yet."""
-        for place in classes_needed(self._plan, part):
+    def _ask(self, places: Iterable[int]) -> None:
+        """Put those of some classes who have not learnt yet onto the list."""
+        for place in places:
             if place in self._missing:
                 continue
             wanted = self._plan.parts_of_class(place)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager, suppress
 from functools import partial
@@ -18,11 +18,13 @@ from typing import NamedTuple
 
 from animat.progress import Telling
 from animat.study.interruption import interruptible
+from animat.study.lending import borrowed
 from animat.study.numbering import KINDS, Kind, Part
 from animat.study.order import Order
 from animat.study.pace import Pace
 from animat.study.parts import Made, classes_needed, live_part
 from animat.study.plan import Plan
+from animat.study.results import Results
 from animat.study.store import Store, StoreError, open_store
 from animat.study.tally import Tally
 
@@ -43,8 +45,8 @@ class Outcome(NamedTuple):
 
     @property
     def complete(self) -> bool:
-        """Whether all lives are finished."""
-        return self.tally.counts["lives"].rows == self.tally.numbering["lives"].total
+        """Whether nothing is left to live."""
+        return self.tally.complete
 
 
 class Workers(NamedTuple):
@@ -63,10 +65,17 @@ def threads(count: int | None = None) -> Iterator[Workers]:
         yield Workers(executor, count, Event())
 
 
-def run(plan: Plan, directory: Path, workers: Workers, tell: Telling) -> Outcome:
+def run(
+    plan: Plan,
+    directory: Path,
+    workers: Workers,
+    tell: Telling,
+    lenders: Sequence[Results] = (),
+) -> Outcome:
     """Live what a results directory lacks of a study.
 
-    The first Ctrl-C ends the run in good order: the parts that are under way are finished.
+    Robots that teach are not lived again that are among the lives of `lenders`. The first Ctrl-C
+    ends the run in good order: the parts that are under way are finished.
 
     Raises:
         SettingsError: the directory holds something else, or cannot be written.
@@ -74,14 +83,17 @@ def run(plan: Plan, directory: Path, workers: Workers, tell: Telling) -> Outcome
         StoreError: it cannot be written any more.
     """
     with open_store(directory, plan) as store:
-        return _Run(store, workers, tell).to_its_end()
+        return _Run(store, workers, tell, lenders).to_its_end()
 
 
 class _Run:
     """One run: what is finished, what is under way."""
 
-    def __init__(self, store: Store, workers: Workers, tell: Telling) -> None:
+    def __init__(
+        self, store: Store, workers: Workers, tell: Telling, lenders: Sequence[Results]
+    ) -> None:
         self.started = time.monotonic()
+        self.lenders = lenders
         self.store, self.plan, self.workers, self.tell = store, store.plan, workers, tell
         self.under_way: dict[Future[Made], Part] = {}
         self.clock: float | None = None
@@ -121,7 +133,8 @@ class _Run:
                 part = self.order.next()
                 if part is None:
                     break
-                self._hand_out(part)
+                if not self._lent(part):
+                    self._hand_out(part)
             if asked.is_set():
                 for future in [each for each in self.under_way if each.cancel()]:
                     del self.under_way[future]
@@ -136,6 +149,15 @@ class _Run:
         live = partial(live_part, stop=self.workers.stop) if self.workers.stop else live_part
         future = self.workers.executor.submit(live, self.plan.text, part, networks)
         self.under_way[future] = part
+
+    def _lent(self, part: Part) -> bool:
+        """Take a part from those who have lived it for a study of their own."""
+        for lender in self.lenders:
+            made = borrowed(self.plan, part, lender)
+            if made is not None:
+                self._take(part, made)
+                return True
+        return False
 
     def _take(self, part: Part, made: Made) -> None:
         """Write a part that was lived, and tell of it."""

@@ -35,7 +35,7 @@ def _who(results: Results, pace: Pace) -> str:
     who, held = holder(results.directory / LOCK)
     if held:
         return f"run by {who or 'another process'}; {pace}"
-    if pace.left() == 0.0:
+    if pace.tally.complete:
         return "finished"
     return "not run by anybody" + (f"; {who} ended without a word" if who else "")
 

@@ -26,7 +26,7 @@ from animat.life.engine import ENGINE
 from animat.settings import SettingsError
 from animat.study.columns import schema
 from animat.study.differences import differences
-from animat.study.lock import Holder, hold
+from animat.study.lock import Holder, RunError, hold
 from animat.study.log import Log, logging_to
 from animat.study.numbering import KINDS, Part
 from animat.study.parts import Made, file_names, part_identity
@@ -43,7 +43,7 @@ COLUMNS = "_common_metadata"
 FOLDERS = ("lives", "teachers", "curves", "traces", INPUTS)
 
 
-class StoreError(RuntimeError):
+class StoreError(RunError):
     """A results directory cannot be written any more; what is finished is kept."""
 
 
@@ -151,7 +151,7 @@ def _begin(directory: Path, plan: Plan) -> None:
     made = provenance()
     if (directory / MANIFEST).exists():
         manifest = read_manifest(directory)
-        found = _differences(directory, manifest, plan)
+        found = differences_from(directory, plan)
         if found:
             raise SettingsError(
                 *(f"{directory}: {line}" for line in found),
@@ -202,8 +202,12 @@ def _folders(plan: Plan) -> list[str]:
     return [folder for folder in FOLDERS if needed[folder]]
 
 
-def _differences(directory: Path, manifest: dict[str, Any], plan: Plan) -> list[str]:
-    """Return a line for everything in which a study is not the one of a directory."""
+def differences_from(directory: Path, plan: Plan) -> list[str]:
+    """Return a line for everything in which a study is not the one of a results directory.
+
+    Raises SettingsError where it is none.
+    """
+    manifest = read_manifest(directory)
     if manifest["engine"] != ENGINE:
         return [f"was lived by engine {manifest['engine']}, and this is engine {ENGINE}"]
     there = (directory / STUDY).read_text("utf-8")

@@ -51,6 +51,11 @@ class Tally:
                 if not self._missing[place]:
                     self.finished_cases += self.cases[place]
 
+    @property
+    def complete(self) -> bool:
+        """Whether all lives are finished, and all robots that teach have learnt."""
+        return all(self.counts[kind].rows == self.numbering[kind].total for kind in KINDS)
+
     def finished(self, part: Part) -> bool:
         """Tell whether a part is finished."""
         return bool(self._finished[part.kind][part.number])
