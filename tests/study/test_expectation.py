@@ -51,6 +51,13 @@ def test_lives_that_die_at_a_constant_rate_are_foretold():
     assert high > low
 
 
+def test_those_who_die_early_do_not_foretell_the_others():
+    late = np.random.default_rng(0).geometric(1e-4, 20_000)
+    lifespans = np.concatenate((np.full(20_000, 10), 500 + late))
+    low, _ = measured(lifespans.tolist(), 1_000).mean_lifespan(20_000)
+    assert low == pytest.approx(np.minimum(lifespans, 20_000).mean(), rel=0.05)
+
+
 STUDY = """
 lives = 30
 steps = 2_000

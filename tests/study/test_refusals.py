@@ -7,14 +7,13 @@ from typing import Any
 
 import pytest
 
-from animat.life.setting import bring_together
-from animat.life.summary import summary
-from animat.mind.mind import Mind
 from animat.settings import SettingsError, validated
+from animat.study.columns import schema
 from animat.study.design import cases, excluded
-from animat.study.refusals import COLUMNS, MOST_CASES, design_mistakes, varied_keys, without
+from animat.study.numbering import KINDS
+from animat.study.plan import Plan
+from animat.study.refusals import MOST_CASES, design_mistakes, varied_keys, without
 from animat.study.study import Study
-from animat.world.world import World
 
 
 def study_of(text: str) -> Study:
@@ -180,6 +179,14 @@ def test_every_mistake_is_told_at_once():
     assert len(lines) == 5
 
 
+def test_what_only_a_lost_rule_lets_in_is_not_told():
+    (line,) = refused(
+        '[design.grid]\n"mind.agnt" = ["x"]\n"mind.agent" = ["AF", "BLIND"]\n'
+        '[[design.exclude]]\nwhen = { "mind.agent" = "AF", "mind.agnt" = "x" }\nwhy = "so"'
+    )
+    assert "unknown key" in line
+
+
 def test_of_very_many_mistakes_the_first_are_told():
     values = ", ".join(f'"A{number}"' for number in range(1_000))
     lines = refused(f'[design.grid]\n"mind.agent" = [{values}]')
@@ -217,14 +224,14 @@ def test_a_mistake_of_a_design_is_told_for_what_it_excludes_too():
         excluded(study)
 
 
-def test_no_factor_can_be_taken_for_a_column_of_the_table_of_lives():
-    setting = bring_together(Mind(), World.abundant())
-    import numpy as np
-
-    states, _ = setting.begin(0, np.zeros(1, np.uint64))
-    columns = summary(setting, 0, np.zeros(1, np.uint64), states)
-    own = [name for name in columns if not name.startswith(("acts_", "successes_"))]
-    assert set(own) < set(COLUMNS)
+def test_no_factor_can_be_taken_for_a_column():
+    text = 'measures = ["likelihoods"]\n[teacher]\n[mind]\nagent = "AF"'
+    plan = Plan(study_of(text))
+    names = {name for kind in KINDS for name in schema(plan, kind).names}
+    assert names >= {"lifespan", "weights", "acts_eat", "likelihood_eat_TS"}
+    for name in names | {"case", "identity", "same_as"}:
+        (line,) = refused(f"[design.grid]\n{name} = {{ a = {{}} }}")
+        assert "give the factor another name" in line or f"design.grid.{name}: is a section" in line
 
 
 @pytest.mark.parametrize("case", MISTAKES)

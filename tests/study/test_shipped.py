@@ -50,7 +50,10 @@ def test_experiment_2_is_that_of_the_paper():
     assert all(case.settings.mind.mortal for case in found)
 
 
-def test_a_name_or_a_path_finds_a_study(tmp_path):
+def test_a_name_or_a_path_finds_a_study(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine").touch()
+    assert str(study_file("mine")) == "mine"
     assert study_file("experiment2") == shipped("experiment2")
     for path in ("mine.toml", "no/such", str(tmp_path / "a.toml")):
         assert str(study_file(path)) == path

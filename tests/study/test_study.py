@@ -96,6 +96,10 @@ def test_a_line_is_changed_for_one_call(file, text):
 
 def test_a_later_change_goes_before_an_earlier_one(file):
     assert read_study(file, ["lives=7", "lives=8"]).lives == 8
+    worlds = ["teacher.world=scarce", "teacher.world.spares=1"]
+    assert read_study(file, worlds).teacher == (
+        Teacher(world=WorldChoice(layout="scarce", spares=1))
+    )
     study = read_study(file, ["design.grid={}", 'design.grid."mind.gate"=["always"]'])
     assert study.design.grid == {"mind.gate": ["always"]}
 

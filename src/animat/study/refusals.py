@@ -44,9 +44,11 @@ MOST_CASES = 100_000
 COLUMNS = (
     "case", "identity", "same_as", "error", "world", "agent", "seed", "life", "lifespan",
     "censored", "death_variable", "death_side", "death_cause", "encounters", "acts", "successes",
-    "failures", "disregarded", "unreached", "blocked", "trainings", "mean_drive",
+    "failures", "disregarded", "unreached", "blocked", "trainings", "mean_drive", "robot",
+    "weights",
 )  # fmt: skip
-"""Columns of the tables of a study, by which no factor may be called."""
+COLUMN_PREFIXES = ("acts_", "successes_", "likelihood_")
+"""Columns of the tables of a study, and how others begin; no factor may be called so."""
 
 VARIES = tuple(CaseSettings.model_fields)
 
@@ -145,7 +147,7 @@ def _own_names(design: Design) -> Iterator[Mistake]:
             line = f'is a section; for the values of a setting quote its key, "{name}.KEY" = [...]'
         elif not name or "." in name:
             line = "a factor with levels needs a name of your own, without a dot"
-        elif name in COLUMNS:
+        elif name in COLUMNS or name.startswith(COLUMN_PREFIXES):
             line = "is a column of the table of lives; give the factor another name"
         elif name in seen:
             line = "another factor has this name"

@@ -27,12 +27,13 @@ def shipped(name: str) -> Path:
 
 
 def study_file(study: str) -> Path:
-    """Return the file of a study, given by its name or by the path of a .toml file.
+    """Return the file of a study, given by its path or, if it comes with animat, by its name.
 
-    Raises SettingsError for a name that no study has; whether the file is there shows on reading.
+    Raises SettingsError for what is neither; whether a .toml file is there shows on reading.
     """
     path = Path(study)
-    return path if path.suffix == ".toml" or path.parent != Path() else shipped(study)
+    is_path = path.suffix == ".toml" or path.parent != Path() or path.is_file()
+    return path if is_path else shipped(study)
 
 
 def write_starter(path: Path, *, force: bool) -> None:
