@@ -144,7 +144,8 @@ def hidden_ticks(fig):
 
 def test_no_figure_needs_pyplot():
     modules = (
-        "causes learning learning_curve life lifespans margins ratio style survival trend worlds"
+        "causes learning learning_curve life lifespans marginal margins ratio sobol specification"
+        " style survival trend verdicts worlds"
     )
     code = "; ".join(f"import animat.report.figures.{name}" for name in modules.split())
     code += "; import sys; sys.exit('matplotlib.pyplot' in sys.modules)"

@@ -8,10 +8,13 @@ import pytest
 from animat.report.claims import judge_learning, judge_lifespans
 from animat.report.lives import column
 from animat.report.multiverse.universes import CELLS, CLAIMS, EFFECTS
+from animat.settings import validated
 from animat.study.multiverse import judged as module
 from animat.study.multiverse.judged import judge
 from animat.study.plan import Plan
 from animat.study.results import open as open_results
+from animat.study.run import run, threads
+from animat.study.study import Study
 
 
 @pytest.fixture(scope="module")
@@ -84,8 +87,8 @@ def test_how_many_are_read_at_a_time_does_not_show(plan, results, judged, monkey
 def test_universes_whose_lives_or_robots_failed_are_left_out(plan, lived, judged, tmp_path):
     directory = tmp_path / "universes"
     shutil.copytree(lived.directory / "universes", directory)
-    case = fail_first(directory / "lives")["case"]
-    identity = fail_first(directory / "teachers")["identity"]
+    case = fail_one(directory / "lives", 0)["case"]
+    identity = fail_one(directory / "teachers", -1)["identity"]
     classes = [one.identity for one in plan.classes]
     taught = [
         plan.class_of(plan.lived.index(plan.cases[cases[1]])) for cases in judged.universes.cases
@@ -98,14 +101,42 @@ def test_universes_whose_lives_or_robots_failed_are_left_out(plan, lived, judged
     assert again.table.num_rows == judged.table.num_rows - len(hit)
 
 
-def fail_first(folder):
-    """Let the first row of the tables of a folder be that of a life that failed; return it."""
-    file = min(folder.glob("part-*.parquet"))
+def fail_one(folder, place):
+    """Let the first or the last row (0 or -1) of a folder's tables be of a life that failed."""
+    file = sorted(folder.glob("part-*.parquet"))[place]
     rows = pq.read_table(file)
-    errors = pa.array(["a robot broke", *[None] * (rows.num_rows - 1)], pa.string())
-    place = rows.schema.get_field_index("error")
-    pq.write_table(rows.set_column(place, "error", errors), file)
-    return rows.slice(0, 1).to_pylist()[0]
+    errors = [None] * rows.num_rows
+    errors[place] = "a robot broke"
+    column_place = rows.schema.get_field_index("error")
+    pq.write_table(rows.set_column(column_place, "error", pa.array(errors, pa.string())), file)
+    return rows.to_pylist()[place]
+
+
+def test_universes_that_share_their_lives_have_them_each(small, tmp_path):
+    """Where no law has a margin, the margin changes nothing, and such lives are lived once."""
+    data = small.model_dump(mode="json", exclude_none=True)
+    data["design"]["sample"] |= {
+        "points": 4,
+        "over": {
+            "mind.physiology": ["excess", "linear"],
+            "mind.lethal_margin": [0.05, 0.01],
+        },
+    }
+    data["design"]["exclude"] = []
+    for world, layout in (("rich", "abundant"), ("poor", "scarce")):
+        data["worlds"][world] = {"layout": layout}
+    plan = Plan(validated(data, Study))
+    assert len(plan.lived) < len(plan.cases)
+    with threads(2) as workers:
+        run(plan, tmp_path, workers, lambda *_, **__: None)
+    results = open_results(tmp_path)
+    judged = judge(plan, results, resamples=99)
+    lives = results.lives(["case", "lifespan"]).to_pandas()
+    mean = lives.groupby("case").lifespan.mean()
+    assert judged.table.num_rows == len(judged.universes.values) > 0
+    for row, cases in zip(judged.table.to_pylist(), judged.universes.cases, strict=True):
+        for (world, agent), case in zip(CELLS, cases, strict=True):
+            assert row[f"mean_{world}_{agent}"] == pytest.approx(mean[case])
 
 
 def test_of_nothing_finished_nothing_is_judged(plan, lived, tmp_path):
