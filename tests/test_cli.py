@@ -19,6 +19,7 @@ import animat.study.publication
 from animat.cli import main
 from animat.life.life import live
 from animat.mind.mind import Mind
+from animat.mind.parameters import parameters
 from animat.world.world import World
 
 PRODUCT = Path(__file__).parents[1] / "docs" / "examples" / "product.py"
@@ -321,7 +322,13 @@ class TestReplay:
 
     def test_another_life_is_told_field_by_field(self, animat_says, monkeypatch):
         assert animat_says(*self.RECORD, "a.parquet").code == 0
-        monkeypatch.setattr("animat.mind.parameters.exponential", lambda x: 1.0 + x)
+
+        def otherwise(mind, affordances):
+            record = parameters(mind, affordances)
+            record.factor *= 1.0 - 1e-7
+            return record
+
+        monkeypatch.setattr("animat.life.setting.parameters", otherwise)
         said = animat_says("replay", "a.parquet", "--verify")
         assert said.code == 1
         lines = said.out.splitlines()
@@ -484,9 +491,10 @@ def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name_and_is_gone_o
     log = tmp_path / "out" / "experiment2" / "log.jsonl"
     parts = [json.loads(line) for line in log.read_text().splitlines() if '"part"' in line]
     numbers = [part["number"] for part in parts if part["kind"] == "lives"]
-    assert len(set(numbers)) == 64
-    # Where it was killed, the line of the last part may not have been written.
-    assert len(numbers) - 64 <= (0 if sent == signal.SIGINT else 1)
+    # Where it was killed, the line of the last part may not have been written, or the part not.
+    unsure = 0 if sent == signal.SIGINT else 1
+    assert 64 - unsure <= len(set(numbers)) <= 64
+    assert len(numbers) - len(set(numbers)) <= unsure
 
 
 def test_a_reader_that_stops_reading_is_no_error_to_talk_of(tmp_path):
