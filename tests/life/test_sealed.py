@@ -107,11 +107,13 @@ def test_any_byte_that_is_changed_is_found_and_placed(place, content, data):
     assert "at its end" in why
 
 
-@pytest.mark.parametrize("from_its_end", [None, 3_000])
-@given(data=st.data())
-def test_wherever_it_is_cut_short_it_is_refused(place, content, from_its_end, data):
-    least = 0 if from_its_end is None else max(len(content) - from_its_end, 0)
-    size = data.draw(st.integers(least, len(content) - 1))
+@given(share=st.floats(0.0, 1.0, exclude_max=True), missing=st.integers(1, 3_000))
+def test_wherever_it_is_cut_short_it_is_refused(place, content, share, missing):
+    for size in (int(share * len(content)), max(len(content) - missing, 0)):
+        cut_short(place, content, size)
+
+
+def cut_short(place, content, size):
     why = refused(place, content[:size])
     assert (
         why == "is empty" if size == 0 else "cut short" in why or why.startswith("is no recording")

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from animat.mind.selection import select
+from animat.mind.selection import affordance_times_drive, select, winner_take_all
 from animat.numerics.fingerprint import fingerprint
 
 HELPER = """
@@ -148,3 +148,8 @@ def test_our_own_functions_are_left_to_the_version_of_the_engine(monkeypatch):
     here = fingerprint(select)
     monkeypatch.setattr(Path, "read_bytes", lambda self: b"changed")
     assert fingerprint(select) == here
+
+
+def test_functions_of_the_package_are_told_apart_by_their_names():
+    assert fingerprint(winner_take_all) == fingerprint(winner_take_all)
+    assert fingerprint(winner_take_all) != fingerprint(affordance_times_drive)

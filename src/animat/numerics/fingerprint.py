@@ -18,16 +18,18 @@ import numpy as np
 from numba.core.dispatcher import Dispatcher
 
 from animat.numerics.compiled import PLAIN
+from animat.settings import SettingsError
 
 OURS = Path(__file__).parents[1]
-"""Functions of this package are left out: the version of the engine stands for them."""
+"""Functions of this package go by their names: the version of the engine stands for the rest."""
 
 
 def fingerprint(function: Callable[..., Any]) -> str:
     """Return the SHA-256, in hexadecimal, of what a function computes by.
 
     It covers the source file of the function and of every function it calls, and the plain values
-    and arrays they take from around them.
+    and arrays they take from around them. Raises SettingsError for a function that takes something
+    else from a function around it.
     """
     total = hashlib.sha256()
     for part in _parts(function, set()):
@@ -38,10 +40,13 @@ def fingerprint(function: Callable[..., Any]) -> str:
 def _parts(function: Any, seen: set[Any]) -> Iterator[bytes]:
     function = getattr(function, "py_func", function)
     source = Path(inspect.getsourcefile(function) or "").absolute()
-    if function in seen or source.is_relative_to(OURS):
+    if function in seen:
         return
     seen.add(function)
     yield function.__qualname__.encode()
+    if source.is_relative_to(OURS):
+        yield function.__module__.encode()
+        return
     yield source.read_bytes().replace(b"\r\n", b"\n") if source.is_file() else b""
     for name, value in sorted(_taken(function), key=lambda taken: taken[0]):
         if isinstance(value, Dispatcher) or inspect.isfunction(value):
@@ -52,6 +57,11 @@ def _parts(function: Any, seen: set[Any]) -> Iterator[bytes]:
             yield np.ascontiguousarray(value).tobytes()
         elif isinstance(value, (*PLAIN, tuple)):
             yield f"{name} {value!r}".encode()
+        elif name in function.__code__.co_freevars:
+            raise SettingsError(
+                f"{function.__name__} takes more from the function around it than numbers, texts,"
+                " arrays and functions, so that nobody can tell whether it has changed"
+            )
 
 
 def _taken(function: Any) -> Iterator[tuple[str, Any]]:

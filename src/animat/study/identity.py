@@ -24,6 +24,7 @@ from animat.mind.mind import Mind
 from animat.mind.selection import RANDOM, WINNER_TAKE_ALL
 from animat.numerics.fingerprint import fingerprint
 from animat.robot.khepera import Khepera
+from animat.settings import SettingsError
 from animat.world.files import world_file
 from animat.world.world import World
 
@@ -52,7 +53,7 @@ class Lived(NamedTuple):
 def identity(lived: Lived, *, traced: bool = False) -> str:
     """Return the identity of lives. In a trace (`traced`) stands also what decides nothing.
 
-    Raises LifeError for what does not fit together.
+    Raises LifeError for what does not fit together, and for a function nobody can tell apart.
     """
     digest = hashlib.sha256()
     for part in _parts(lived, traced):
@@ -85,7 +86,10 @@ def _parts(lived: Lived, traced: bool) -> Iterator[bytes]:
     for role, built_in in BUILT_IN._asdict().items():
         own = getattr(lived.functions, role)
         if own is not built_in and role not in unread:
-            yield f"{role} {fingerprint(own)}".encode()
+            try:
+                yield f"{role} {fingerprint(own)}".encode()
+            except SettingsError as error:
+                raise LifeError(f"{role}: {error}") from None
     if networks:
         untaught = [bool(mind.learning.biases), mind.learning.hidden_units]
         yield lived.taught.encode() if lived.taught else json.dumps(untaught).encode()
