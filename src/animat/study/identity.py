@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from animat.life.engine import ENGINE
-from animat.life.setting import checked_parameters
+from animat.life.setting import LifeError, checked_parameters
 from animat.mind.agents import ACCEPT_ALL, ASK_NETWORKS, ASK_TRUTH
 from animat.mind.functions import BUILT_IN, Functions
 from animat.mind.mind import Mind
