@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -229,3 +230,12 @@ from pathlib import Path
 golden.FILE = Path(sys.argv[1])
 sys.exit(golden.main([]))
 """
+
+
+def test_the_page_names_tests_that_are_there():
+    root = HERE.parents[1]
+    page = (root / "docs" / "determinism.md").read_text(encoding="utf-8")
+    named = re.findall(r"`(tests/[\w/]+\.py)::(\w+)`", page)
+    assert len(named) > 20
+    for file, test in named:
+        assert f"def {test}(" in (root / file).read_text(encoding="utf-8"), test
