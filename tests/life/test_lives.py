@@ -37,7 +37,7 @@ def test_the_number_of_threads_does_not_matter(threads, many, small):
 
 @pytest.mark.parametrize(("chunk", "length"), [(1, 10_000), (7, 333), (1_000, 1)])
 def test_chunks_and_slices_do_not_matter(chunk, length, many, small, monkeypatch):
-    monkeypatch.setattr(module, "CHUNK", chunk)
+    monkeypatch.setattr(module, "chunk_size", lambda steps: chunk)
     monkeypatch.setattr(module, "SLICE", length)
     steps, lives = (STEPS, 70) if length > 1 else (300, 10)
     told = live_many(Mind(), small, lives=lives, seed=6, steps=steps)
@@ -142,7 +142,7 @@ def test_chunks_that_nobody_waits_for_are_not_lived_on(small):
     before = threading.active_count()
     chunks.close()
     assert threading.active_count() < before
-    assert first["life"].to_pylist() == list(range(module.CHUNK))
+    assert first["life"].to_pylist() == list(range(module.chunk_size(200)))
 
 
 @pytest.mark.parametrize(

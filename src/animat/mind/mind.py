@@ -13,6 +13,7 @@ from animat.mind.functions import BUILT_IN, Functions, resolve
 from animat.mind.networks import Networks
 from animat.mind.parameters import ESTIMATORS, LAWS, LEARNERS, SELECTORS, WANDERERS
 from animat.mind.physiology import PHYSIOLOGIES, Kind, Variable
+from animat.mistakes import plain
 from animat.settings import Settings, explain, nearest
 
 Unit = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -123,6 +124,13 @@ class Mind(Settings):
     learning: Learning = Learning()
     networks: Networks | None = Field(default=None, exclude=True, repr=False)
 
+    @field_validator("networks", mode="before")
+    @classmethod
+    def _from_python(cls, value: Any) -> Any:
+        if not isinstance(value, Networks | None):
+            raise ValueError("networks are those of a life, and given in Python only")
+        return value
+
     @field_validator("selector")
     @classmethod
     def _known_selector(cls, value: Function | None) -> Function | None:
@@ -202,13 +210,13 @@ class Mind(Settings):
             raise ValueError("\n".join(problems))
         return resolved
 
-    def functions(self) -> Functions:
-        """Return the user's own functions, compiled. Raises FunctionError."""
-        chosen: dict[str, Any] = {}
-        for law in set(_own_laws(self.resolved_variables()).values()):
-            chosen["law"] = resolve("law", law)
+    def own_functions(self) -> dict[str, Function]:
+        """Return the user's own functions as they were given, by their role in `SIGNATURES`."""
+        own: dict[str, Function] = {}
+        for law in _own_laws(self.resolved_variables()).values():
+            own["law"] = law
         if self.drive_function is not None:
-            chosen["drives"] = resolve("drives", self.drive_function)
+            own["drives"] = self.drive_function
         for role, value, known in (
             ("selector", self.selector, SELECTORS),
             ("estimator", self.learning.estimator, ESTIMATORS),
@@ -216,8 +224,13 @@ class Mind(Settings):
             ("wander", self.wander, WANDERERS),
         ):
             if value is not None and value not in known:
-                chosen[role] = resolve(role, value)
-        return BUILT_IN._replace(**chosen)
+                own[role] = value
+        return own
+
+    def functions(self) -> Functions:
+        """Return the user's own functions, compiled. Raises FunctionError."""
+        own = self.own_functions()
+        return BUILT_IN._replace(**{role: resolve(role, own[role]) for role in own})
 
     def weight_count(self, feature_count: int) -> int:
         """Return the number of weights of one of its networks."""
@@ -227,7 +240,7 @@ class Mind(Settings):
 def _known(role: str, value: Any, known: dict[Any, int]) -> Any:
     """Let through a built-in name, a function, or FILE.py:NAME."""
     if isinstance(value, str) and value not in known and ".py:" not in value:
-        raise ValueError(f'"{value}" is no {role}, nor FILE.py:NAME{nearest(value, known)}')
+        raise ValueError(f"{plain(value)} is no {role}, nor FILE.py:NAME{nearest(value, known)}")
     return value
 
 
@@ -240,19 +253,19 @@ def _unknown_names(mind: Mind, variables: dict[str, Variable]) -> list[str]:
         for watched in (*drive.a, *drive.b):
             if watched not in variables:
                 problems.append(
-                    f'drives.{name} watches "{watched}", which is no variable'
+                    f"drives.{name} watches {plain(watched)}, which is no variable"
                     f"{nearest(watched, variables)}"
                 )
     for name, behaviour in mind.behaviours.items():
         if behaviour.serves not in mind.drives:
             problems.append(
-                f'behaviours.{name}.serves = "{behaviour.serves}" is no drive'
+                f"behaviours.{name}.serves = {plain(behaviour.serves)} is no drive"
                 f"{nearest(behaviour.serves, mind.drives)}"
             )
         for moved in (*(behaviour.success or ()), *(behaviour.failure or ())):
             if moved not in variables:
                 problems.append(
-                    f'behaviours.{name} moves "{moved}", which is no variable'
+                    f"behaviours.{name} moves {plain(moved)}, which is no variable"
                     f"{nearest(moved, variables)}"
                 )
     return problems
