@@ -195,9 +195,12 @@ def told(short: bool = False) -> dict[str, Any]:
 
 
 def changed(before: dict[str, Any], now: dict[str, Any]) -> list[str]:
-    """Return the names of the hashes that are not what they were; new names are no change."""
+    """Return the names of the lives that are not what they were; new names are no change.
+
+    Nor are rasters: a world may be drawn otherwise without any life being another.
+    """
     found = ["many"] if before["many"] != now["many"] else []
-    for part in ("rasters", "short", "long"):
+    for part in ("short", "long"):
         for name, known in before[part].items():
             if now[part].get(name) != known:
                 found.append(f"{part}: {name}")
@@ -212,7 +215,7 @@ def objection(before: dict[str, Any], now: dict[str, Any], changelog: str) -> st
     if found and now["engine"] == before["engine"]:
         more = f" and {len(found) - 3} more" if len(found) > 3 else ""
         return (
-            f"{len(found)} golden hashes are not those of engine {ENGINE} any more"
+            f"{len(found)} golden lives are not those of engine {ENGINE} any more"
             f" ({'; '.join(found[:3])}{more}).\nIf that is meant: raise ENGINE in"
             " src/animat/life/engine.py, say why in CHANGELOG.md, and run this again."
         )
