@@ -19,6 +19,7 @@ import animat.study.publication
 from animat.cli import main
 from animat.life.life import live
 from animat.mind.mind import Mind
+from animat.mind.parameters import parameters
 from animat.world.world import World
 
 PRODUCT = Path(__file__).parents[1] / "docs" / "examples" / "product.py"
@@ -321,7 +322,13 @@ class TestReplay:
 
     def test_another_life_is_told_field_by_field(self, animat_says, monkeypatch):
         assert animat_says(*self.RECORD, "a.parquet").code == 0
-        monkeypatch.setattr("animat.mind.parameters.exponential", lambda x: 1.0 + x)
+
+        def otherwise(mind, affordances):
+            record = parameters(mind, affordances)
+            record.factor *= 1.0 - 1e-7
+            return record
+
+        monkeypatch.setattr("animat.life.setting.parameters", otherwise)
         said = animat_says("replay", "a.parquet", "--verify")
         assert said.code == 1
         lines = said.out.splitlines()

@@ -1,4 +1,6 @@
 import os
+import stat
+from pathlib import Path
 
 import pytest
 
@@ -26,6 +28,28 @@ def test_a_file_that_cannot_be_finished_leaves_the_old_one(tmp_path, monkeypatch
         write_whole(path, b"two")
     assert path.read_bytes() == b"one"
     assert [file.name for file in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_content_comes_to_the_disk_before_the_name_and_the_name_before_the_end(
+    tmp_path, monkeypatch
+):
+    path = tmp_path / "a.txt"
+    happened = []
+    fsync, rename = os.fsync, os.replace
+
+    def synced(handle):
+        is_directory = stat.S_ISDIR(os.fstat(handle).st_mode)
+        happened.append("directory" if is_directory else os.fstat(handle).st_size)
+        fsync(handle)
+
+    def replaced(old, new):
+        happened.append(Path(new).name)
+        rename(old, new)
+
+    monkeypatch.setattr(os, "fsync", synced)
+    monkeypatch.setattr(os, "replace", replaced)
+    write_whole(path, b"four")
+    assert happened == [4, "a.txt", "directory"]
 
 
 def test_a_writer_that_fails_leaves_the_old_file(tmp_path):

@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 
 from animat.settings import SettingsError
 
@@ -14,7 +15,8 @@ from animat.settings import SettingsError
 def whole(path: Path) -> Iterator[Path]:
     """Yield a temporary name beside `path`; what is written there takes the name at the end.
 
-    What was at `path` stays as it was if anything goes wrong.
+    What was at `path` stays as it was if anything goes wrong. Afterwards the file is on the disk
+    and not only under way to it: a power cut loses neither its content nor its name.
 
     Raises:
         SettingsError: the file cannot be written.
@@ -25,6 +27,7 @@ def whole(path: Path) -> Iterator[Path]:
         with partial.open("rb+") as file:
             os.fsync(file.fileno())
         partial.replace(path)
+        sync_directory(path.parent)
     except OSError as error:
         raise SettingsError(f"{path}: cannot be written: {error.strerror or error}") from None
     finally:
@@ -32,7 +35,37 @@ def whole(path: Path) -> Iterator[Path]:
             partial.unlink()
 
 
+def sync_directory(path: Path) -> None:
+    """Bring the names of the files in a directory to the disk. Raises OSError."""
+    directory = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(directory)
+    finally:
+        os.close(directory)
+
+
 def write_whole(path: Path, content: bytes) -> None:
     """Write `content` to `path`, replacing what was there. Raises SettingsError."""
     with whole(path) as partial:
         partial.write_bytes(content)
+
+
+def check_writable(path: Path, suffixes: tuple[str, ...], *, force: bool) -> None:
+    """Refuse, before any work, a file that could not be written at its end. Raises SettingsError.
+
+    Its name must end in one of `suffixes`; only with `force` may it be there already.
+    """
+    if path.suffix.lower() not in suffixes:
+        raise SettingsError(f"{path}: give a name that ends in {' or '.join(suffixes)}")
+    try:
+        if path.is_dir():
+            raise SettingsError(f"{path}: is a directory; give the name of a file")
+        if path.exists() and not force:
+            raise SettingsError(f"{path}: is there already; --force replaces it")
+        if not path.parent.is_dir():
+            raise SettingsError(f"{path}: there is no directory {path.parent}; make it first")
+        # Only writing tells: permissions say nothing of a full or a read-only disk.
+        with NamedTemporaryFile(prefix=f".{path.name}.", suffix=".part", dir=path.parent):
+            pass
+    except OSError as error:
+        raise SettingsError(f"{path}: cannot be written: {error.strerror}") from None

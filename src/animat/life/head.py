@@ -19,7 +19,7 @@ from animat.mind.networks import Networks
 from animat.numerics.fingerprint import fingerprint
 from animat.robot.khepera import Khepera
 from animat.settings import Settings, SettingsError, explain
-from animat.world.files import WorldFile, world_file
+from animat.world.files import WorldFile, world_content
 from animat.world.world import World
 
 FORMAT = 1
@@ -127,6 +127,7 @@ def head_of(moment: Moment, steps: int, every: int, made: Mapping[str, Any]) -> 
             )
     networks = setting.mind.networks
     world = setting.world
+    content = world_content(world.name, world.layout, world.resolution)
     fields = fields_of(moment.states.dtype)
     return Head(
         format=FORMAT,
@@ -147,7 +148,7 @@ def head_of(moment: Moment, steps: int, every: int, made: Mapping[str, Any]) -> 
             weights=tuple(map(tuple, networks.weights.tolist())),
         ),
         robot=setting.robot,
-        world=world_file(world.name, world.layout, world.resolution),
+        world=WorldFile.model_validate(content, strict=False),
         functions=_fingerprints(setting),
         fields=fields,
         end=_end(moment, fields),

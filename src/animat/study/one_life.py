@@ -7,12 +7,11 @@ trace and for its figure, and memory does not grow with its length.
 from __future__ import annotations
 
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 from typing import NamedTuple
 
 import pyarrow.parquet as pq
 
-from animat.files import whole
+from animat.files import check_writable, whole
 from animat.life.life import Life, Moment, Progress, TraceChoice, birth, check, live, lived
 from animat.life.recording import EVERY, Recording, write_recording
 from animat.life.setting import LifeError, bring_together
@@ -204,25 +203,7 @@ def _check_files(asked: OneLife) -> None:
         (asked.figure, DRAWINGS),
         (asked.record, (".parquet",)),
     ):
-        _check_file(path, suffixes, asked.force)
+        if path:
+            check_writable(path, suffixes, force=asked.force)
     if asked.record and asked.trace and asked.record.resolve() == asked.trace.resolve():
         raise SettingsError(f"{asked.record}: is to be both trace and recording; give two names")
-
-
-def _check_file(path: Path | None, suffixes: tuple[str, ...], force: bool) -> None:
-    if path is None:
-        return
-    if path.suffix.lower() not in suffixes:
-        raise SettingsError(f"{path}: give a name that ends in {' or '.join(suffixes)}")
-    try:
-        if path.is_dir():
-            raise SettingsError(f"{path}: is a directory; give the name of a file")
-        if path.exists() and not force:
-            raise SettingsError(f"{path}: is there already; --force replaces it")
-        if not path.parent.is_dir():
-            raise SettingsError(f"{path}: there is no directory {path.parent}; make it first")
-        # Only writing tells: permissions say nothing of a full or a read-only disk.
-        with NamedTemporaryFile(prefix=f".{path.name}.", suffix=".part", dir=path.parent):
-            pass
-    except OSError as error:
-        raise SettingsError(f"{path}: cannot be written: {error.strerror}") from None
