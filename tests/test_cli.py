@@ -395,13 +395,13 @@ class TestReproduce:
         assert animat_says("reproduce", *SMALL).code == 2
         assert (out / "lives.parquet").is_file()
         assert animat_says("reproduce", *SMALL, "--force").code == 0
-        assert names(out) == ["report.html"]
+        assert names(out) == ["experiment1", "experiment2", "report.html"]
         assert names(tmp_path / "results") == ["reproduction"]
 
     def test_quick_is_small_and_may_be_changed(self, animat_says, monkeypatch):
         sizes = []
 
-        def run(settings, *, seed, size, tell):
+        def run(settings, *, seed, size, directory, tell, anew):
             sizes.append(size)
             raise KeyboardInterrupt
 
@@ -414,7 +414,9 @@ class TestReproduce:
         assert changed == quick._replace(lives=7)
         assert seeds == full._replace(robots=3)
 
-    def test_an_interruption_leaves_everything_as_it_was(self, animat_says, monkeypatch, tmp_path):
+    def test_an_interruption_leaves_an_earlier_result_and_what_is_finished(
+        self, animat_says, monkeypatch, tmp_path
+    ):
         old = tmp_path / "results" / "reproduction"
         old.mkdir(parents=True)
         (old / "how_made.json").write_text("old")
@@ -428,14 +430,25 @@ class TestReproduce:
             said = animat_says("reproduce", *SMALL, *options)
             assert (said.code, said.out) == (130, "")
             assert said.err.endswith("animat: interrupted; nothing is half-written\n")
-        assert names(tmp_path) == ["results"]
-        assert names(tmp_path / "results") == ["reproduction"]
+        assert names(tmp_path / "results") == [".reproduction.partial", "reproduction"]
         assert names(old) == ["how_made.json"]
+        assert names(tmp_path / "new") == [".one.partial"]
+
+        monkeypatch.setattr(animat.study.publication, "publish", briefly)
+        said = animat_says("reproduce", *SMALL, "--seed", "1", "--out", "new/one")
+        assert said.code == 2
+        assert "seed = 0 there and 1 here" in said.err
+        assert "--force begins anew" in said.err
+        assert animat_says("reproduce", *SMALL, "--out", "new/one").code == 0
+        assert names(tmp_path / "new") == ["one"]
+        log = (tmp_path / "new" / "one" / "experiment1" / "log.jsonl").read_text()
+        assert log.count('"event": "start"') == 2
+        assert log.count('"event": "part"') == 1
 
 
 def started(directory: Path) -> bool:
     """Whether a run has begun to fill a directory of its own."""
-    return any(path.name.startswith(".out.partial-") for path in directory.iterdir())
+    return any((directory / ".out.partial").glob("experiment2/lives/part-*"))
 
 
 @pytest.fixture
@@ -448,28 +461,40 @@ def interruptible():
 
 @pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGKILL])
-def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name(
+def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name_and_is_gone_on_with(
     sent, tmp_path, animat_says, monkeypatch
 ):
-    run = start("reproduce", "--lives", "1000000", "--out", "out", cwd=tmp_path)
+    size = ("--lives", "40000", "--seeds", "1", "--steps", "60")
+    run = start("reproduce", *size, "--out", "out", cwd=tmp_path)
     while not started(tmp_path):
         assert run.poll() is None
         time.sleep(0.02)
-    time.sleep(0.3)
     run.send_signal(sent)
     out, err = run.communicate(timeout=60)
     assert out == ""
     assert "Traceback" not in err
-    assert not (tmp_path / "out").exists()
+    assert names(tmp_path) == [".out.partial"]
     if sent == signal.SIGINT:
-        # A shell shows 130 for either: Python dies of the signal where it hit an `exec`.
-        assert run.returncode in {130, -signal.SIGINT}
-        assert err.endswith("animat: interrupted; nothing is half-written\n")
-        assert names(tmp_path) == []
-    else:
-        monkeypatch.setattr(animat.study.publication, "publish", briefly)
-        assert animat_says("reproduce", *SMALL, "--out", "out").code == 0
-        assert (tmp_path / "out" / "report.html").is_file()
+        assert run.returncode == 130
+        assert "interrupted: finishing the parts that are under way" in err
+        kept = tmp_path / ".out.partial"
+        assert err.endswith(
+            f"animat: what is finished is kept in {kept}; the same command goes on with it\n"
+            "animat: interrupted; nothing is half-written\n"
+        )
+    log = tmp_path / ".out.partial" / "experiment2" / "log.jsonl"
+    before = log.read_text().count('"event": "part", ')
+    assert before > 0
+    monkeypatch.setattr(animat.study.publication, "publish", briefly)
+    assert animat_says("reproduce", *size, "--out", "out").code == 0
+    assert names(tmp_path) == ["out"]
+    log = tmp_path / "out" / "experiment2" / "log.jsonl"
+    parts = [json.loads(line) for line in log.read_text().splitlines() if '"part"' in line]
+    numbers = [part["number"] for part in parts if part["kind"] == "lives"]
+    # Where it was killed, the line of the last part may not have been written, or the part not.
+    unsure = 0 if sent == signal.SIGINT else 1
+    assert 64 - unsure <= len(set(numbers)) <= 64
+    assert len(numbers) - len(set(numbers)) <= unsure
 
 
 def test_a_reader_that_stops_reading_is_no_error_to_talk_of(tmp_path):

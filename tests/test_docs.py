@@ -19,10 +19,15 @@ from animat.mind.mind import Behaviour, Drive, Learning, Mind, VariableChange
 from animat.mind.physiology import PHYSIOLOGIES, Variable
 from animat.robot.khepera import Khepera
 from animat.settings import Settings, SettingsError, read_toml
-from animat.study.settings import LifeSettings, WorldChoice
+from animat.study.design import Exclusion
+from animat.study.plan import Plan
+from animat.study.sampling import Sample
+from animat.study.settings import LifeSettings, Teacher, WorldChoice
+from animat.study.study import Record, Study, read_study
 from animat.world.world import World
 
 ROOT = Path(__file__).parents[1]
+STUDIES = ROOT / "docs" / "studies.md"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 SMALLER = {"steps=300_000": "steps=2_000", "lives=1_000": "lives=4", "lives=100": "lives=4"}
@@ -45,10 +50,10 @@ def blocks(page: Path) -> list[Block]:
     return [Block(m[1], m[2], m.string[: m.start()].rstrip().rsplit("\n\n", 1)[-1]) for m in found]
 
 
-def shown(language: str) -> list[Any]:
+def shown(language: str, pages: list[Path]) -> list[Any]:
     return [
         pytest.param(block, id=f"{page.name}-{number}")
-        for page in PAGES
+        for page in pages
         for number, block in enumerate(blocks(page))
         if block.language == language
     ]
@@ -62,7 +67,7 @@ def here(tmp_path, monkeypatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("block", shown("toml"))
+@pytest.mark.parametrize("block", shown("toml", [page for page in PAGES if page != STUDIES]))
 def test_every_file_shown_is_accepted(here, block):
     file = here / "shown.toml"
     file.write_text(block.text)
@@ -74,6 +79,20 @@ def test_every_file_shown_is_accepted(here, block):
     if block.before.endswith(WRITTEN_OUT):
         assert settings == LifeSettings()
         assert settings.mind.model_fields_set | settings.robot.model_fields_set
+
+
+@pytest.mark.parametrize("block", shown("toml", [STUDIES]))
+def test_every_study_shown_is_accepted_or_refused_as_shown(here, block):
+    file = Path("wrong.toml")
+    file.write_text(block.text)
+    if not block.text.startswith(f"# {file}"):
+        assert Plan(read_study(file)).lived
+        return
+    told = next(b.text for b in blocks(STUDIES) if b.text.startswith(f"$ animat check {file}"))
+    with pytest.raises(SettingsError) as caught:
+        read_study(file)
+    lines = [line.removeprefix("animat: ") for line in told.splitlines()[1:]]
+    assert list(caught.value.problems) == lines
 
 
 def test_what_is_said_to_be_written_out_is():
@@ -131,14 +150,24 @@ TABLES: dict[str, tuple[type[Settings], type[Settings]]] = {
 """Under which heading which settings stand, and which model has their defaults."""
 
 
+STUDY_TABLES: dict[str, type[Settings]] = {
+    "## The study": Study,
+    "## `[teacher]`": Teacher,
+    "## `[record]`": Record,
+    "### `[design.sample]`": Sample,
+    "### `[[design.exclude]]`": Exclusion,
+}
+"""The same of a study, which has the settings of a case besides."""
+
+
 COLUMNS = 4
 """Of a table of settings: name, default, allowed, what it means."""
 
 
-def rows(heading: str) -> dict[str, list[str]]:
+def rows(heading: str, page: Path = ROOT / "docs" / "settings.md") -> dict[str, list[str]]:
     """The settings in the tables of a section: default, allowed and meaning by name."""
-    text = (ROOT / "docs" / "settings.md").read_text("utf-8")
-    section = text.split(f"\n## `{heading}`\n")[1].split("\n## ")[0]
+    level = heading.split(maxsplit=1)[0]
+    section = page.read_text("utf-8").split(f"\n{heading}\n")[1].split(f"\n{level} ")[0]
     lines = [line for line in section.splitlines() if line.startswith("| `")]
     cells = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines]
     return {row[0].strip("`"): row[1:] for row in cells if len(row) == COLUMNS and row[0].islower()}
@@ -147,8 +176,24 @@ def rows(heading: str) -> dict[str, list[str]]:
 @pytest.mark.parametrize("heading", TABLES)
 def test_every_setting_is_documented_with_its_default(heading):
     model, defaults = TABLES[heading]
-    documented = rows(heading)
-    assert set(documented) == set(model.model_fields)
+    check_documented(rows(f"## `{heading}`"), model, defaults)
+
+
+@pytest.mark.parametrize("heading", STUDY_TABLES)
+def test_every_key_of_a_study_is_documented_with_its_default(heading):
+    model = STUDY_TABLES[heading]
+    check_documented(rows(heading, STUDIES), model, model, besides=set(LifeSettings.model_fields))
+
+
+def check_documented(
+    documented: dict[str, list[str]],
+    model: type[Settings],
+    defaults: type[Settings],
+    besides: set[str] | None = None,
+) -> None:
+    """Hold a table against the settings of a model, but for those told elsewhere."""
+    elsewhere = besides if besides and besides < set(model.model_fields) else set()
+    assert set(documented) == set(model.model_fields) - elsewhere
     for name, (default, allowed, meaning) in documented.items():
         assert default == written(defaults.model_fields[name]), name
         for word in limits(model.model_fields[name]):
@@ -186,13 +231,20 @@ def limits(field: FieldInfo) -> Iterator[str]:
             metadata += inner.metadata
     for limit in metadata:
         if isinstance(limit, annotated_types.Ge):
-            yield f"{limit.ge:g}"
+            yield told(limit.ge)
         if isinstance(limit, annotated_types.Gt):
-            yield f"above {limit.gt:g}"
+            yield f"above {told(limit.gt)}"
         if isinstance(limit, annotated_types.Le):
-            yield f"{limit.le:g}"
+            yield told(limit.le)
         if isinstance(limit, annotated_types.Lt):
-            yield f"below {limit.lt:g}"
+            yield f"below {told(limit.lt)}"
+
+
+def told(limit: Any) -> str:
+    """A limit as the page has it."""
+    if isinstance(limit, int) and limit >= 1 << 20 and limit & (limit - 1) == 0:
+        return f"2^{limit.bit_length() - 1}"
+    return str(limit) if isinstance(limit, int) else f"{limit:g}"
 
 
 def test_the_physiologies_are_as_documented():
@@ -222,6 +274,6 @@ def test_a_file_of_the_examples_is_accepted(here):
 def test_toml_of_numbers_is_what_it_says():
     """The defaults of the tables can be written into a file as they stand."""
     for heading in TABLES:
-        for name, (default, *_) in rows(heading).items():
+        for name, (default, *_) in rows(f"## `{heading}`").items():
             if default.startswith("`"):
                 assert name in tomllib.loads(f"{name} = {default.strip('`')}")

@@ -20,8 +20,9 @@ from pathlib import Path
 import numpy as np
 
 import animat
-from animat.study.experiment1 import learn
-from animat.study.experiment2 import compare
+from animat.life.likelihoods import afforded, likelihoods
+from animat.life.lives import live_states
+from animat.life.setting import bring_together
 
 TYPES = ("TS", "TL", "CS", "CL")
 SEED = 20_030_401
@@ -41,7 +42,9 @@ def main() -> None:
     parser.add_argument("--save", type=Path, help="save the first layout here and stop")
     options = parser.parse_args()
     counts = dict(zip(TYPES, options.counts, strict=True))
-    mind, robot = animat.Mind(), animat.Khepera()
+    learner = animat.Mind(agent="LEARNING")
+    hidden = learner.learning.hidden_units
+    robots = np.arange(options.robots, dtype=np.uint64)
     out = csv.writer(sys.stdout, delimiter="\t")
     out.writerow(("objects", "layout", "BLIND", "AF", "ratio", "learning error"))
     for seed in range(options.first, options.first + options.layouts):
@@ -50,14 +53,22 @@ def main() -> None:
             world.save(options.save)
             return
         school = animat.World.load(options.teacher) if options.teacher else world
-        learnt = learn(mind, school, robot, robots=options.robots, steps=300_000, seed=SEED)
-        likelihood = learnt.final["likelihood"].to_numpy().reshape(options.robots, -1)
-        afforded = learnt.final["afforded"].to_numpy().reshape(options.robots, -1)[0]
-        error = np.abs(likelihood.mean(axis=0) - afforded).max()
-        lives = compare(
-            mind, [world], robot, learnt.networks, lives=options.lives, steps=300_000, seed=SEED
+        setting = bring_together(learner, school)
+        states = live_states(setting, SEED, robots, 300_000)
+        error = np.abs(likelihoods(setting, states).mean(axis=0) - afforded(setting)).max()
+        networks = [
+            animat.Networks(tuple(learner.behaviours), school.feature_names, hidden, weights)
+            for weights in states["weights"]
+        ]
+        blind, knowing = (
+            animat.live_many(
+                animat.Mind(agent=agent), world, lives=options.lives, seed=SEED, networks=known
+            )
+            .table["lifespan"]
+            .to_numpy()
+            .mean()
+            for agent, known in (("BLIND", None), ("AF", networks))
         )
-        blind, knowing = lives["lifespan"].to_numpy().reshape(2, -1).mean(axis=1)
         out.writerow(
             (
                 sum(options.counts),

@@ -55,12 +55,19 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 def mistakes(error: ValidationError, model: type[BaseModel]) -> list[str]:
     """Return a line for every mistake, `key a.b[0] = VALUE: what is wrong with it`."""
-    found = [_found(detail, model) for detail in error.errors(include_url=False)]
-    lines = [line for mistake in _without_other_branches(found) for line in mistake.lines()]
+    lines = [line for mistake in mistakes_found(error, model) for line in mistake.lines()]
     return list(dict.fromkeys(lines))
 
 
-class _Mistake(NamedTuple):
+def mistakes_found(error: ValidationError, model: type[BaseModel]) -> list[Mistake]:
+    """Return every mistake in what should be settings of `model`."""
+    found = [_found(detail, model) for detail in error.errors(include_url=False)]
+    return _without_other_branches(found)
+
+
+class Mistake(NamedTuple):
+    """What is wrong with the value of a key; `value` is " = VALUE", or empty."""
+
     key: tuple[str | int, ...]
     value: str
     message: str
@@ -69,18 +76,18 @@ class _Mistake(NamedTuple):
 
     def lines(self) -> list[str]:
         """Return a line for each mistake that a validator of ours reported together."""
-        name = f"key {_written(self.key)}{self.value}: " if self.key else ""
-        return [name + line for line in self.message.splitlines()]
+        name = f"key {written(self.key)}{self.value}: " if self.key else ""
+        return [name + line for line in self.message.split("\n")]
 
 
-def _found(detail: ErrorDetails, model: type[BaseModel]) -> _Mistake:
+def _found(detail: ErrorDetails, model: type[BaseModel]) -> Mistake:
     here: Any = model
     key: list[str | int] = []
     union = branch = None
     of_key = False
     holder: Any = None
     for part in detail["loc"]:
-        options = _options(here)
+        options = allowed_types(here)
         if part == "[key]":
             of_key = True
             here = _argument(holder, 0)
@@ -91,33 +98,33 @@ def _found(detail: ErrorDetails, model: type[BaseModel]) -> _Mistake:
         else:
             holder = options[0]
             key.append(part)
-            here = _inside(holder, part)
+            here = inside(holder, part)
     if detail["type"] in {"union_tag_invalid", "union_tag_not_found"}:
         return _untagged(detail, tuple(key))
-    message = _message(detail, _options(here)[0], holder, of_key)
+    message = _message(detail, allowed_types(here)[0], holder, of_key)
     silent = of_key or detail["type"] in {"missing", "extra_forbidden"}
-    value = "" if silent else _shown(detail["input"])
-    return _Mistake(tuple(key), value, message, union, branch)
+    value = "" if silent else shown(detail["input"])
+    return Mistake(tuple(key), value, message, union, branch)
 
 
-def _untagged(detail: ErrorDetails, key: tuple[str | int, ...]) -> _Mistake:
+def _untagged(detail: ErrorDetails, key: tuple[str | int, ...]) -> Mistake:
     """Return what is wrong with the key by whose value the branch of a union is chosen."""
     context = detail.get("ctx", {})
     tag = context["discriminator"].strip("'")
     if detail["type"] == "union_tag_not_found":
-        return _Mistake((*key, tag), "", MISSING)
+        return Mistake((*key, tag), "", MISSING)
     choices = re.findall(r"'([^']*)'", context["expected_tags"])
     value = context["tag"]
-    return _Mistake((*key, tag), _shown(value), _not_among(choices, value, False))
+    return Mistake((*key, tag), shown(value), _not_among(choices, value, False))
 
 
-def _without_other_branches(found: Sequence[_Mistake]) -> list[_Mistake]:
+def _without_other_branches(found: Sequence[Mistake]) -> list[Mistake]:
     """Report of each union only the branch the user meant, or all of them in one mistake."""
-    unions: dict[tuple[str | int, ...], dict[str | int | None, list[_Mistake]]] = {}
+    unions: dict[tuple[str | int, ...], dict[str | int | None, list[Mistake]]] = {}
     for mistake in found:
         if mistake.union is not None:
             unions.setdefault(mistake.union, {}).setdefault(mistake.branch, []).append(mistake)
-    kept: list[_Mistake] = []
+    kept: list[Mistake] = []
     for mistake in found:
         if mistake.union is None:
             kept.append(mistake)
@@ -144,7 +151,7 @@ def _message(detail: ErrorDetails, here: Any, holder: Any, of_key: bool) -> str:
     if kind == "missing":
         return MISSING
     if kind == "extra_forbidden":
-        fields = holder.model_fields if _is_model(holder) else ()
+        fields = holder.model_fields if is_model(holder) else ()
         return f"unknown key{nearest(str(detail['loc'][-1]), fields)}"
     if kind == "literal_error" and get_origin(here) is Literal:
         return _not_among(get_args(here), detail["input"], of_key)
@@ -160,7 +167,7 @@ def _not_among(choices: Sequence[Any], value: Any, of_key: bool) -> str:
         return f"unknown key{nearest(str(value), names)}"
     close = _closest(value, names) if isinstance(value, str) else None
     hint = f'; did you mean "{close}"?' if close is not None else ""
-    return f"must be one of {', '.join(map(_plain, choices))}{hint}"
+    return f"must be one of {', '.join(map(plain, choices))}{hint}"
 
 
 def _closest(name: str, known: Sequence[str]) -> str | None:
@@ -173,49 +180,54 @@ def _closest(name: str, known: Sequence[str]) -> str | None:
     return by_folded[close[0]] if close else None
 
 
-def _written(key: Sequence[str | int]) -> str:
+def written(key: Sequence[str | int]) -> str:
     """Return a key as TOML writes it, list entries as [0], [1], ..."""
     text = ""
     for part in key:
         if isinstance(part, int):
             text += f"[{part}]"
         else:
-            text += "." + (part if re.fullmatch(r"[A-Za-z0-9_-]+", part) else _plain(part))
+            text += "." + (part if re.fullmatch(r"[A-Za-z0-9_-]+", part) else plain(part))
     return text.removeprefix(".")
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
     """Return ' = VALUE', or nothing where the value is a table or a list."""
     if isinstance(value, Mapping | list | tuple | set | BaseModel):
         return ""
-    text = _plain(value)
+    text = plain(value)
     return " = " + (text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 3] + "...")
 
 
-def _plain(value: Any) -> str:
+def plain(value: Any) -> str:
     """Return a value as TOML writes it, on one line and without what a terminal would obey."""
     if isinstance(value, bool | str):
         text = json.dumps(value, ensure_ascii=False)
     else:
         text = " ".join(str(value).split())
+    return printable(text)
+
+
+def printable(text: str) -> str:
+    """Return a text with escapes for what cannot be printed, or would move a terminal's cursor."""
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
-def _options(annotation: Any) -> list[Any]:
+def allowed_types(annotation: Any) -> list[Any]:
     """Return what an annotation allows besides None, at least one."""
     while get_origin(annotation) is Annotated or hasattr(annotation, "__value__"):
         annotation = getattr(annotation, "__value__", None) or _argument(annotation, 0)
     if get_origin(annotation) not in {Union, UnionType}:
         return [annotation]
     options = [each for each in get_args(annotation) if each is not NoneType]
-    return options if len(options) > 1 else _options(options[0])
+    return options if len(options) > 1 else allowed_types(options[0])
 
 
 def _branch(options: Sequence[Any], label: str | int) -> Any:
     """Return the branch of a union that pydantic calls `label`, None if it cannot be told."""
     for option in options:
-        here = _options(option)[0]
-        if _is_model(here):
+        here = allowed_types(option)[0]
+        if is_model(here):
             if here.__name__ == label or any(
                 label in get_args(field.annotation) for field in here.model_fields.values()
             ):
@@ -225,9 +237,9 @@ def _branch(options: Sequence[Any], label: str | int) -> Any:
     return None
 
 
-def _inside(holder: Any, part: str | int) -> Any:
+def inside(holder: Any, part: str | int) -> Any:
     """Return what stands under a key of a model, a dict or a list, None if unknown."""
-    if _is_model(holder):
+    if is_model(holder):
         field = holder.model_fields.get(part)
         return field.annotation if field is not None else None
     if isinstance(part, int) and get_origin(holder) is tuple and Ellipsis not in get_args(holder):
@@ -240,5 +252,6 @@ def _argument(annotation: Any, index: int) -> Any:
     return arguments[index] if index < len(arguments) else None
 
 
-def _is_model(annotation: Any) -> bool:
+def is_model(annotation: Any) -> bool:
+    """Tell whether an annotation is a model of settings."""
     return isinstance(annotation, type) and issubclass(annotation, BaseModel)

@@ -14,9 +14,13 @@ LINE_EVERY = 5.0
 
 
 class Telling(Protocol):
-    """Takes note that `done` more of `total` are done of a task."""
+    """Takes note that `done` more of `total` are done of a task.
 
-    def __call__(self, task: str, done: int, total: int) -> None:
+    What the first call brings was done before, and is no part of the speed. `note` is told beside
+    the numbers, in the place of the time that is left.
+    """
+
+    def __call__(self, task: str, done: int, total: int, note: str = "") -> None:
         """Take note."""
 
 
@@ -31,28 +35,35 @@ def telling() -> Iterator[Telling]:
         BarColumn,
         MofNCompleteColumn,
         Progress,
+        Task,
         TextColumn,
         TimeElapsedColumn,
         TimeRemainingColumn,
     )
+    from rich.text import Text
+
+    class Left(TimeRemainingColumn):
+        def render(self, task: Task) -> Text:
+            note = task.fields["note"]
+            return Text(note) if note else Text("left ") + super().render(task)
 
     bars = Progress(
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        Left(),
         console=Console(stderr=True),
     )
     tasks = {}
     lock = Lock()
 
-    def tell(task: str, done: int, total: int) -> None:
+    def tell(task: str, done: int, total: int, note: str = "") -> None:
         with lock:
             if task not in tasks:
-                tasks[task] = bars.add_task(task, total=total)
-        bars.advance(tasks[task], done)
+                tasks[task] = bars.add_task(task, total=total, completed=done, note=note)
+                return
+        bars.update(tasks[task], advance=done, note=note)
 
     with bars:
         yield tell
@@ -60,20 +71,38 @@ def telling() -> Iterator[Telling]:
 
 def _plain_lines() -> Telling:
     counts: dict[str, int] = {}
+    before: dict[str, int] = {}
     started: dict[str, float] = {}
     last: dict[str, float] = {}
     lock = Lock()
 
-    def tell(task: str, done: int, total: int) -> None:
+    def tell(task: str, done: int, total: int, note: str = "") -> None:
         with lock:
             now = time.monotonic()
             start = started.setdefault(task, now)
+            before.setdefault(task, done)
             counts[task] = count = counts.get(task, 0) + done
             if count < total and now - last.setdefault(task, start) < LINE_EVERY:
                 return
             last[task] = now
-            left = (now - start) * (total - count) / max(count, 1)
-            told = f", {left:.0f} s left" if count < total else f", {now - start:.0f} s"
-            print(f"{task}: {count:,} of {total:,}{told}", file=sys.stderr, flush=True)
+            told = note
+            if count >= total:
+                told = in_words(now - start)
+            elif not note and count > before[task]:
+                speed = (count - before[task]) / (now - start)
+                told = f"about {in_words((total - count) / speed)} left"
+            line = f"{task}: {count:,} of {total:,}" + (f", {told}" if told else "")
+            print(line, file=sys.stderr, flush=True)
 
     return tell
+
+
+def in_words(seconds: float) -> str:
+    """Return a duration as people say it, such as "3 min" or "2 h 5 min"."""
+    if seconds < 99.5:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    if minutes < 100:
+        return f"{minutes} min"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min" if hours < 48 else f"{round(hours / 24)} days"

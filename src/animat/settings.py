@@ -8,20 +8,34 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Iterator
+from datetime import date, time
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from animat.mistakes import mistakes, nearest
+from animat.mistakes import mistakes, nearest, printable, written
 
-__all__ = ["Settings", "SettingsError", "explain", "nearest", "read_toml"]
+__all__ = [
+    "Settings",
+    "SettingsError",
+    "explain",
+    "nearest",
+    "parse_text",
+    "parse_toml",
+    "read_toml",
+    "validated",
+    "values_within",
+]
 
 LARGEST_FILE = 1_000_000
 """Bytes; a settings file is written by hand, so a larger one is some other file."""
 
 DEEPEST = 32
 """Tables and lists inside one another; no settings come near it."""
+
+Key = tuple[str | int, ...]
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -40,8 +54,8 @@ class SettingsError(ValueError):
 
     def __init__(self, *problems: str) -> None:
         """Keep the problems, one line each."""
-        self.problems = problems
-        super().__init__(*problems)
+        self.problems = tuple(printable(problem) for problem in problems)
+        super().__init__(*self.problems)
 
     def __str__(self) -> str:
         """Return the problems, one line each."""
@@ -59,16 +73,51 @@ def read_toml(path: Path | str, model: type[Model], largest: int = LARGEST_FILE)
     Raises:
         SettingsError: the file cannot be read, is empty, is no TOML, or has mistakes.
     """
-    data = _parsed(_text(Path(path), largest), path)
-    if not data:
-        raise SettingsError(f"{path}: is empty: it sets nothing")
-    if _is_deeper_than(data, DEEPEST):
-        raise SettingsError(f"{path}: is nested too deeply: more than {DEEPEST} levels")
     try:
-        # By way of JSON because there a list may become a tuple and a string a path, even strictly.
-        return model.model_validate_json(json.dumps(data, default=str))
+        return validated(parse_toml(path, largest), model)
     except ValidationError as error:
         raise explain(error, model, str(path)) from None
+
+
+def parse_toml(path: Path | str, largest: int = LARGEST_FILE) -> dict[str, Any]:
+    """Return what a TOML file of at most `largest` bytes says, of whatever it is.
+
+    Raises:
+        SettingsError: the file cannot be read, is empty or is no TOML, or has a date.
+    """
+    data = parse_text(_text(Path(path), largest), str(path))
+    if not data:
+        raise SettingsError(f"{path}: is empty: it sets nothing")
+    return data
+
+
+def parse_text(text: str, where: str) -> dict[str, Any]:
+    """Return what TOML says. Raises SettingsError, its lines led by `where`."""
+    data = _parsed(text, where)
+    if _is_deeper_than(data, DEEPEST):
+        raise SettingsError(f"{where}: is nested too deeply: more than {DEEPEST} levels")
+    dates = [
+        f"{where}: key {written(key)} = {value}: is a date or a time; put text in quotes"
+        for key, value in values_within(data)
+        if isinstance(value, date | time)
+    ]
+    if dates:
+        raise SettingsError(*dates)
+    return data
+
+
+def values_within(value: Any, key: Key = ()) -> Iterator[tuple[Key, Any]]:
+    """Yield what is in a table or a list, also in inner ones, each with its key."""
+    if isinstance(value, dict | list):
+        for part, inner in value.items() if isinstance(value, dict) else enumerate(value):
+            yield (*key, part), inner
+            yield from values_within(inner, (*key, part))
+
+
+def validated(data: dict[str, Any], model: type[Model]) -> Model:
+    """Return what TOML says as settings of `model`. Raises pydantic's ValidationError."""
+    # By way of JSON because there a list may become a tuple and a string a path, even strictly.
+    return model.model_validate_json(json.dumps(data))
 
 
 def _text(path: Path, largest: int) -> str:
@@ -94,7 +143,7 @@ def _text(path: Path, largest: int) -> str:
         raise SettingsError(f"{path}: is not UTF-8 text (line {line})") from None
 
 
-def _parsed(text: str, path: Path | str) -> dict[str, Any]:
+def _parsed(text: str, path: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except RecursionError:

@@ -107,12 +107,11 @@ def test_any_byte_that_is_changed_is_found_and_placed(place, content, data):
     assert "at its end" in why
 
 
+@pytest.mark.parametrize("from_its_end", [None, 3_000])
 @given(data=st.data())
-def test_wherever_it_is_cut_short_it_is_refused(place, content, data):
-    # As often near its end, where most of it is there.
-    size = data.draw(
-        st.integers(0, len(content) - 1) | st.integers(len(content) - 3_000, len(content) - 1)
-    )
+def test_wherever_it_is_cut_short_it_is_refused(place, content, from_its_end, data):
+    least = 0 if from_its_end is None else max(len(content) - from_its_end, 0)
+    size = data.draw(st.integers(least, len(content) - 1))
     why = refused(place, content[:size])
     assert (
         why == "is empty" if size == 0 else "cut short" in why or why.startswith("is no recording")

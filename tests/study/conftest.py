@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import importlib.util
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 
+from animat.study.plan import Plan
 from animat.study.publication import publish
 from animat.study.reproduction import Reproduction, Size, reproduce
+from animat.study.run import run, threads
 from animat.study.settings import LifeSettings
 
 Told = list[tuple[str, int, int]]
@@ -27,13 +30,40 @@ def published(tmp_path_factory: pytest.TempPathFactory) -> Published:
     directory = tmp_path_factory.mktemp("reproduction")
     told: Told = []
 
-    def tell(task: str, done: int, total: int) -> None:
+    def tell(task: str, done: int, total: int, note: str = "") -> None:
         told.append((task, done, total))
 
     size = Size(robots=4, lives=24, steps=3_000)
-    result = reproduce(LifeSettings(), seed=1, size=size, tell=tell)
+    result = reproduce(LifeSettings(), seed=1, size=size, directory=directory, tell=tell)
     publish(result, directory, lambda: tell("Pages", 1, 8))
     return Published(result, directory, told)
+
+
+@pytest.fixture(scope="session")
+def faults() -> Any:
+    """The driver that breaks off runs, as a module."""
+    file = Path(__file__).with_name("faults.py")
+    spec = importlib.util.spec_from_file_location("faults", file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="session")
+def small(faults: Any) -> Plan:
+    """The plan of a study that writes files of every kind, and few of them."""
+    return faults.plan(faults.SMALL)
+
+
+@pytest.fixture(scope="session")
+def finished(small: Plan, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The results of the small study; copy them to change them."""
+    directory = tmp_path_factory.mktemp("small") / "results"
+    with threads(2) as workers:
+        assert run(small, directory, workers, lambda *_, **__: None).complete
+    return directory
 
 
 @pytest.fixture(scope="session")

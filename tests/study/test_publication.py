@@ -18,7 +18,7 @@ def test_everything_is_there_and_nothing_else(published):
     wanted = {f"{name}.parquet" for name in TABLES}
     wanted |= {f"{name}.{end}" for name in FIGURES for end in ("svg", "png")}
     wanted |= {"claims.json", "settings.toml", "how_made.json", "report.html"}
-    wanted |= {"world_abundant.toml", "world_scarce.toml"}
+    wanted |= {"world_abundant.toml", "world_scarce.toml", "experiment1", "experiment2"}
     assert {path.name for path in published.directory.iterdir()} == wanted
 
 

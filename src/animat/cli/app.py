@@ -14,7 +14,7 @@ from animat.cli.options import Debug
 
 app = typer.Typer(
     name="animat",
-    help="A laboratory for motivated robots: reproduce the paper of 2003, live a life.",
+    help="A laboratory for motivated robots: reproduce the paper of 2003, study, live a life.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,  # to load rich would take most of the time of --help
@@ -49,6 +49,7 @@ def main() -> None:
 def _explain(error: Exception) -> NoReturn:
     """Say what went wrong in a line for each mistake, and exit."""
     from animat.settings import SettingsError
+    from animat.study.lock import RunError
 
     if "--debug" in sys.argv:
         traceback.print_exception(error)
@@ -58,6 +59,8 @@ def _explain(error: Exception) -> NoReturn:
         _leave(usage(), WRONG_INPUT)
     if isinstance(error, SettingsError):
         _leave(str(error), WRONG_INPUT)
+    if isinstance(error, RunError):
+        _leave(str(error), FAILED)
     what = str(error)
     if isinstance(error, OSError) and error.filename:
         what = f"{error.filename}: {error.strerror}"

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -50,10 +52,22 @@ def reproduce(
     check(chosen, seed, size)
     started = time.monotonic()
     with fresh_directory(out, force=force) as directory, compiling_told(), telling() as tell:
-        result = run(chosen, seed=seed, size=size, tell=tell)
+        with kept_told(directory):
+            result = run(chosen, seed=seed, size=size, directory=directory, tell=tell, anew=force)
         publish(result, directory, lambda: tell("Figures and page", 1, len(FIGURES) + 1))
     _print_result(result)
     print(f"{time.monotonic() - started:.0f} s; open {out / 'report.html'}")
+
+
+@contextmanager
+def kept_told(directory: Path) -> Iterator[None]:
+    """Say after an interruption where that is which is finished."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        kept = f"what is finished is kept in {directory}; the same command goes on with it"
+        print(f"animat: {kept}", file=sys.stderr)
+        raise
 
 
 def _print_result(result: Reproduction) -> None:

@@ -66,9 +66,29 @@ class Setting(NamedTuple):
         return states, present
 
 
-def bring_together(mind: Mind, world: World, robot: Khepera | None = None) -> Setting:
-    """Return the setting of a mind in a robot in a world. Raises LifeError."""
+def bring_together(
+    mind: Mind, world: World, robot: Khepera | None = None, functions: Functions | None = None
+) -> Setting:
+    """Return the setting of a mind in a robot in a world.
+
+    `functions` are the user's own of the mind, where they are compiled already. Raises LifeError.
+    """
     robot = robot or Khepera()
+    mind_parameters = checked_parameters(mind, world)
+    horizon = robot.radius + mind.encounter_range + world.resolution
+    return Setting(
+        mind,
+        robot,
+        world,
+        mind_parameters,
+        robot.parameters(),
+        world.raster(horizon),
+        functions or mind.functions(),
+    )
+
+
+def checked_parameters(mind: Mind, world: World) -> np.record:
+    """Return what the step reads of a mind in a world. Raises LifeError where they do not fit."""
     if mind.agent == "AF" and mind.networks is None:
         raise LifeError(
             "agent AF needs trained networks: live a LEARNING life first and give its networks,"
@@ -84,17 +104,7 @@ def bring_together(mind: Mind, world: World, robot: Khepera | None = None) -> Se
             "consumed = true needs spare sites to put objects to: give the world some,"
             " world.with_spares(2), or spares = 2"
         )
-    horizon = robot.radius + mind.encounter_range + world.resolution
     try:
-        mind_parameters = parameters(mind, world.affordances)
+        return parameters(mind, world.affordances)
     except ValueError as error:
         raise LifeError(str(error)) from error
-    return Setting(
-        mind,
-        robot,
-        world,
-        mind_parameters,
-        robot.parameters(),
-        world.raster(horizon),
-        mind.functions(),
-    )

@@ -139,6 +139,8 @@ def search(state, mind, robot, functions, seed, life):
     )
     state.left = int(left)
     state.right = int(right)
+    # A command that is no number becomes some motor command; the sum shows that it was none.
+    state.drive_sum += 0.0 * (left + right)
 
 
 @compiled

@@ -13,6 +13,7 @@ from animat.mind.functions import BUILT_IN, Functions, resolve
 from animat.mind.networks import Networks
 from animat.mind.parameters import ESTIMATORS, LAWS, LEARNERS, SELECTORS, WANDERERS
 from animat.mind.physiology import PHYSIOLOGIES, Kind, Variable
+from animat.mistakes import plain
 from animat.settings import Settings, explain, nearest
 
 Unit = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -123,6 +124,13 @@ class Mind(Settings):
     learning: Learning = Learning()
     networks: Networks | None = Field(default=None, exclude=True, repr=False)
 
+    @field_validator("networks", mode="before")
+    @classmethod
+    def _from_python(cls, value: Any) -> Any:
+        if not isinstance(value, Networks | None):
+            raise ValueError("networks are those of a life, and given in Python only")
+        return value
+
     @field_validator("selector")
     @classmethod
     def _known_selector(cls, value: Function | None) -> Function | None:
@@ -232,7 +240,7 @@ class Mind(Settings):
 def _known(role: str, value: Any, known: dict[Any, int]) -> Any:
     """Let through a built-in name, a function, or FILE.py:NAME."""
     if isinstance(value, str) and value not in known and ".py:" not in value:
-        raise ValueError(f'"{value}" is no {role}, nor FILE.py:NAME{nearest(value, known)}')
+        raise ValueError(f"{plain(value)} is no {role}, nor FILE.py:NAME{nearest(value, known)}")
     return value
 
 
@@ -245,19 +253,19 @@ def _unknown_names(mind: Mind, variables: dict[str, Variable]) -> list[str]:
         for watched in (*drive.a, *drive.b):
             if watched not in variables:
                 problems.append(
-                    f'drives.{name} watches "{watched}", which is no variable'
+                    f"drives.{name} watches {plain(watched)}, which is no variable"
                     f"{nearest(watched, variables)}"
                 )
     for name, behaviour in mind.behaviours.items():
         if behaviour.serves not in mind.drives:
             problems.append(
-                f'behaviours.{name}.serves = "{behaviour.serves}" is no drive'
+                f"behaviours.{name}.serves = {plain(behaviour.serves)} is no drive"
                 f"{nearest(behaviour.serves, mind.drives)}"
             )
         for moved in (*(behaviour.success or ()), *(behaviour.failure or ())):
             if moved not in variables:
                 problems.append(
-                    f'behaviours.{name} moves "{moved}", which is no variable'
+                    f"behaviours.{name} moves {plain(moved)}, which is no variable"
                     f"{nearest(moved, variables)}"
                 )
     return problems

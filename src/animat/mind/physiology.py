@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from animat.mistakes import plain
 from animat.settings import Settings, nearest
 
 Kind = Literal["deficit", "excess"]
@@ -57,7 +58,7 @@ class Variable(Settings):
             raise ValueError(f"lethal_margin = {self.lethal_margin} leaves no viability zone")
         if isinstance(self.law, str) and self.law not in BY_NAME and ".py:" not in self.law:
             raise ValueError(
-                f'law = "{self.law}" is no law, nor FILE.py:NAME{nearest(self.law, BY_NAME)}'
+                f"law = {plain(self.law)} is no law, nor FILE.py:NAME{nearest(self.law, BY_NAME)}"
             )
         implied = FALLING.get(self.law) if isinstance(self.law, str) else None
         if implied and self.kind not in {None, implied}:

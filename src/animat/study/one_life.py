@@ -203,7 +203,7 @@ def _check_files(asked: OneLife) -> None:
         (asked.figure, DRAWINGS),
         (asked.record, (".parquet",)),
     ):
-        if path:
+        if path is not None:
             check_writable(path, suffixes, force=asked.force)
     if asked.record and asked.trace and asked.record.resolve() == asked.trace.resolve():
         raise SettingsError(f"{asked.record}: is to be both trace and recording; give two names")

@@ -10,6 +10,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from animat.settings import SettingsError
+from animat.study.lock import hold
+
+LOCK = "lock"
 
 HOW_MADE = "how_made.json"
 """The file that every result holds: only a directory with it is replaced by another."""
@@ -19,29 +22,32 @@ HOW_MADE = "how_made.json"
 def fresh_directory(out: Path, *, force: bool) -> Iterator[Path]:
     """Yield a directory to fill; it takes the name `out` once it is filled without an error.
 
-    With `force` it takes the place of an earlier result, which stays until the new one is whole.
+    What comes to nothing is kept, hidden beside `out`, and yielded again the next time. With
+    `force` the directory takes the place of an earlier result, which stays until it is whole.
 
     Raises:
         SettingsError: `out` is there already and not `force`, is no result, or cannot be made.
+        HeldError: another process fills it.
     """
     try:
         # Where a link leads to, so that the link stays one.
         place = Path(os.path.realpath(out))
         _refuse_what_is_there(out, place, force)
-        # Missing parents are made at the end, so that a failure leaves none behind.
-        ground = next(parent for parent in place.parents if parent.exists())
-        partial = Path(tempfile.mkdtemp(prefix=f".{out.name}.partial-", dir=ground))
+        partial = place.with_name(f".{place.name}.partial")
+        new = [one for one in (partial, *partial.parents) if not one.exists()]
+        partial.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise SettingsError(f"{out}: cannot be made: {error.strerror}") from None
+    lock = partial / LOCK
     try:
-        yield partial
-        partial.chmod(0o777 & ~_umask())
-        place.parent.mkdir(parents=True, exist_ok=True)
-        _put(partial, place, force)
+        with hold(lock):
+            yield partial
+            lock.unlink()
+            _put(partial, place, force)
     except OSError as error:
         raise SettingsError(f"{out}: cannot be written: {error.strerror or error}") from None
     finally:
-        shutil.rmtree(partial, ignore_errors=True)
+        _leave_nothing_empty(lock, new)
 
 
 def _refuse_what_is_there(out: Path, place: Path, force: bool) -> None:
@@ -80,8 +86,10 @@ def _put(partial: Path, place: Path, force: bool) -> None:
     shutil.rmtree(old, ignore_errors=True)
 
 
-def _umask() -> int:
-    """Return the mask of this process; there is no way to read it but to set it."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def _leave_nothing_empty(lock: Path, new: list[Path]) -> None:
+    """Take away the directories that were made, from the innermost on, if nothing is in them."""
+    with suppress(OSError):
+        if [*lock.parent.iterdir()] == [lock]:
+            lock.unlink()
+        for directory in new:
+            directory.rmdir()

@@ -171,6 +171,7 @@ def _lead(result: Reproduction) -> list[str]:
         f"Of the paper's seven claims, {told} under the readings below:"
         f" {result.size.robots} robots that learn, then {result.size.lives:,} lives in each of the"
         f" four cells, up to {result.size.steps:,} steps each.",
+        *([f"{result.failed:,} lives failed and are left out."] if result.failed else []),
     ]
 
 
@@ -180,7 +181,7 @@ def _sections(
     tests = page.TableBlock(
         ("World", "Log-rank statistic", "p"),
         [
-            (world, f"{test.statistic:.2f}", f"{test.p:.2g}" if test.p > 0.0 else "< 1e-300")
+            (world, f"{test.statistic:.2f}", page.p_value(test.p))
             for world, test in result.tests.items()
         ],
         "BLIND against AF: do their lives end alike?",
@@ -205,7 +206,8 @@ def _sections(
         page.Section(
             "How this was made",
             paragraphs=[
-                "settings.toml and how_made.json beside this page hold all of it;"
+                "settings.toml and how_made.json beside this page hold all of it, experiment1 and"
+                " experiment2 the results of both studies;"
                 f" animat reproduce --settings settings.toml --seed {result.seed}"
                 f" --lives {result.size.lives} --seeds {result.size.robots}"
                 f" --steps {result.size.steps} makes the same numbers again."

@@ -1,10 +1,17 @@
-"""The reproduction of the paper: both experiments, and the verdict on every claim."""
+"""The reproduction of the paper: both experiments, and the verdict on every claim.
+
+The experiments are the studies that come with animat, lived into a directory each, so that a
+reproduction that was broken off can be gone on with.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import shutil
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from animat.life.life import check as check_life
 from animat.life.setting import LifeError
@@ -12,14 +19,24 @@ from animat.progress import Telling
 from animat.report.claims import Claim, judge
 from animat.report.lives import cell, cells, first_lives
 from animat.report.survival import CellSummary, LogRank, logrank, summarise
-from animat.study.experiment1 import Learnt, learn
-from animat.study.experiment2 import compare
+from animat.settings import SettingsError, validated
+from animat.study.experiment1 import Learnt, learnt
+from animat.study.plan import plan_of
+from animat.study.results import Results
+from animat.study.run import run, threads
 from animat.study.settings import LifeSettings, WorldChoice
+from animat.study.shipped import shipped
+from animat.study.store import MANIFEST, differences_from
+from animat.study.study import Study, read_study
 from animat.world.world import World
 
 PAPERS_LIVES = 20
 """Lives in each cell of the paper's Figure 5."""
 
+SPARES = 2
+"""Spare sites of every type, where objects that were used are put elsewhere."""
+
+EXPERIMENTS = ("experiment1", "experiment2")
 
 NEEDED = {"drives": ("hunger", "fatigue"), "behaviours": ("eat", "shelter")}
 """What the figures of Experiment 1 show of a mind, whatever else it has."""
@@ -40,8 +57,9 @@ QUICK = Size(robots=10, lives=60, steps=60_000)
 class Reproduction(NamedTuple):
     """What came of it.
 
-    `summaries` and `papers` are of all lives and of the first 20 a cell; `tests` compares BLIND
-    and AF in each world.
+    `lives` are those of Experiment 2, those that failed left out. `summaries` and `papers` are of
+    all lives and of the first 20 a cell; `tests` compares BLIND and AF in each world. `failed` is
+    how many lives, robots of Experiment 1 included, failed.
     """
 
     settings: LifeSettings
@@ -54,6 +72,7 @@ class Reproduction(NamedTuple):
     summaries: list[CellSummary]
     papers: list[CellSummary]
     tests: dict[str, LogRank]
+    failed: int
 
 
 def check(settings: LifeSettings, seed: int, size: Size) -> None:
@@ -83,34 +102,54 @@ def check(settings: LifeSettings, seed: int, size: Size) -> None:
     check_life(seed, 0, size.steps)
 
 
-def reproduce(settings: LifeSettings, *, seed: int, size: Size, tell: Telling) -> Reproduction:
-    """Run both experiments and judge the claims. Raises LifeError for what cannot be lived."""
-    check(settings, seed, size)
-    worlds = (World.abundant(), World.scarce())
+def studies(settings: LifeSettings, seed: int, size: Size) -> tuple[Study, Study]:
+    """Return both experiments as studies of these settings."""
+    mind = settings.mind.model_dump(mode="json", exclude_unset=True)
+    both = {
+        "seed": seed,
+        "steps": size.steps,
+        "mind": mind,
+        "robot": settings.robot.model_dump(mode="json", exclude_unset=True),
+        "world": {"spares": SPARES} if settings.mind.consumed else {},
+    }
+    robots = {"lives": size.robots, "record": {"lives": size.robots}}
+    teacher: dict[str, Any] = {"robots": size.robots, "steps": size.steps}
     if settings.mind.consumed:
-        worlds = (worlds[0].with_spares(2), worlds[1].with_spares(2))
-    all_steps = size.robots * size.steps
-    learnt = learn(
-        settings.mind,
-        worlds[0],
-        settings.robot,
-        robots=size.robots,
-        steps=size.steps,
-        seed=seed,
-        progress=lambda steps: tell("Experiment 1, steps", steps, all_steps),
+        teacher["world"] = {"layout": "abundant", "spares": SPARES}
+    first, second = (read_study(shipped(name)) for name in EXPERIMENTS)
+    return (
+        _changed(first, {**both, **robots, "mind": {**mind, "agent": "LEARNING"}}),
+        _changed(second, {**both, "lives": size.lives, "teacher": teacher}),
     )
-    lives = compare(
-        settings.mind,
-        worlds,
-        settings.robot,
-        learnt.networks,
-        lives=size.lives,
-        steps=size.steps,
-        seed=seed,
-        progress=lambda lives: tell("Experiment 2, lives", lives, 4 * size.lives),
-    )
+
+
+def reproduce(
+    settings: LifeSettings,
+    *,
+    seed: int,
+    size: Size,
+    directory: Path,
+    tell: Telling,
+    anew: bool = False,
+) -> Reproduction:
+    """Run both experiments into `directory`, or go on with them there, and judge the claims.
+
+    With `anew`, experiments of other settings that were broken off there are thrown away.
+
+    Raises:
+        SettingsError: what cannot be lived, or a directory that holds experiments of other
+            settings, or cannot be written.
+        RunError: another process runs them there, or it cannot be written any more.
+        KeyboardInterrupt: the run was ended before its time.
+    """
+    check(settings, seed, size)
+    lived: list[Results] = []
+    for study in studies(settings, seed, size):
+        lived.append(_lived(study, directory / study.name, lived, tell, anew))
+    robots = learnt(lived[0])
     tell("Statistics", 0, 3)
-    claims = judge(lives, learnt.final)
+    lives = _lives(lived[1])
+    claims = judge(lives, robots.final)
     tell("Statistics", 1, 3)
     summaries = summarise(lives)
     tell("Statistics", 1, 3)
@@ -120,6 +159,49 @@ def reproduce(settings: LifeSettings, *, seed: int, size: Size, tell: Telling) -
         for world in dict.fromkeys(lives["world"].to_pylist())
     }
     tell("Statistics", 1, 3)
+    worlds = (World.abundant(), World.scarce())
+    if settings.mind.consumed:
+        worlds = (worlds[0].with_spares(SPARES), worlds[1].with_spares(SPARES))
+    failed = sum(results.tally().counts["lives"].failed for results in lived)
     return Reproduction(
-        settings, seed, size, worlds, learnt, lives, claims, summaries, papers, tests
+        settings, seed, size, worlds, robots, lives, claims, summaries, papers, tests, failed
     )
+
+
+def _lived(
+    study: Study, directory: Path, lenders: list[Results], tell: Telling, anew: bool
+) -> Results:
+    """Return the results of an experiment, lived into its directory as far as they lack there."""
+    plan = plan_of(study.to_toml())
+    if (directory / MANIFEST).exists() and (found := differences_from(directory, plan)):
+        if not anew:
+            raise SettingsError(
+                *(f"{directory}: {line}" for line in found),
+                f"{directory}: was broken off; --force begins anew, --out names another directory",
+            )
+        shutil.rmtree(directory)
+
+    def told(task: str, done: int, total: int, note: str = "") -> None:
+        which = study.name.replace("experiment", "Experiment ")
+        tell(f"{which}, {task[0].lower()}{task[1:]}", done, total, note)
+
+    with threads() as workers:
+        if not run(plan, directory, workers, told, lenders).complete:
+            raise KeyboardInterrupt
+    return Results(directory)
+
+
+def _changed(study: Study, changes: dict[str, Any]) -> Study:
+    """Return a study with some of its keys, those in tables as well, set to something else."""
+    data = study.model_dump(mode="json", exclude_unset=True)
+    for key, value in changes.items():
+        inner = isinstance(value, dict) and isinstance(data.get(key), dict)
+        data[key] = {**data[key], **value} if inner else value
+    return validated(data, Study)
+
+
+def _lives(results: Results) -> pa.Table:
+    """Return the lives of Experiment 2 that did not fail, as a table of lives."""
+    own = {"case", "error", *results.factors}
+    lives = results.lives(where=pc.field("error").is_null())
+    return lives.select([name for name in lives.column_names if name not in own])

@@ -1,0 +1,86 @@
+"""`animat run`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from animat.cli.app import DONE, FAILED, INTERRUPTED, app
+from animat.cli.options import Debug, compiling_told
+
+if TYPE_CHECKING:
+    from animat.study.plan import Plan
+    from animat.study.run import Outcome
+
+SHOWN = 3
+"""Lives that failed of which the error is shown."""
+
+
+@app.command()
+def run(
+    study: Annotated[
+        str, typer.Argument(help="A study's .toml file, or the name of one that comes with animat.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="The results directory; results/NAME unless given.")
+    ] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="Another value for a key: KEY=VALUE.")
+    ] = None,
+    threads: Annotated[
+        int | None, typer.Option(help="Threads; as many as cores unless given.", min=1)
+    ] = None,
+    debug: Debug = False,
+) -> int:
+    """Live the lives of a study, or those that its results directory still lacks."""
+    from animat.progress import telling
+    from animat.study.livable import check_livable
+    from animat.study.plan import plan_of
+    from animat.study.run import run as live
+    from animat.study.run import threads as workers_of
+    from animat.study.shipped import study_file
+    from animat.study.store import MANIFEST
+    from animat.study.study import read_study
+
+    plan = plan_of(read_study(study_file(study), set_ or ()).to_toml())
+    directory = out or Path("results") / plan.study.name
+    _say_what(plan, directory)
+    with compiling_told(), telling() as tell, workers_of(threads) as workers:
+        if not (directory / MANIFEST).exists():
+            check_livable(plan)
+        outcome = live(plan, directory, workers, tell)
+    return _say_how_it_ended(outcome, directory)
+
+
+def _say_what(plan: Plan, directory: Path) -> None:
+    from animat.study.design import excluded
+
+    cases, lives = len(plan.cases), plan.numbering["lives"].total
+    print(f"{plan.study.name}: {cases:,} cases, {lives:,} lives; results in {directory}")
+    for rule in excluded(plan.study):
+        print(f"left out, {rule.count:,} cases: {rule.why}")
+    sys.stdout.flush()
+
+
+def _say_how_it_ended(outcome: Outcome, directory: Path) -> int:
+    from animat.study.results import open as open_results
+
+    lives = outcome.tally.counts["lives"]
+    total = outcome.tally.numbering["lives"].total
+    if not outcome.complete:
+        print(
+            f"animat: {lives.rows:,} of {total:,} lives are in {directory}; the same command goes"
+            " on with the others",
+            file=sys.stderr,
+        )
+        return INTERRUPTED
+    print(f"{total:,} lives are in {directory}; {outcome.seconds:.0f} s")
+    if not lives.failed:
+        return DONE
+    print(f"animat: {lives.failed:,} of {total:,} lives failed", file=sys.stderr)
+    for told in open_results(directory).failures(SHOWN):
+        print(f"animat: {told}", file=sys.stderr)
+    return FAILED

@@ -1,0 +1,29 @@
+"""`animat verify`."""
+
+from __future__ import annotations
+
+import sys
+
+from animat.cli.app import DONE, FAILED, app
+from animat.cli.options import Debug, ResultsDirectory, compiling_told
+
+
+@app.command()
+def verify(directory: ResultsDirectory, debug: Debug = False) -> int:
+    """Read all results of a study again, live some of its lives again, and say what differs."""
+    from animat.progress import telling
+    from animat.study.results import open as open_results
+    from animat.study.verify import verify as look
+
+    results = open_results(directory)
+    with compiling_told(), telling() as tell:
+        found = look(results, tell)
+    for problem in found.problems:
+        print(f"animat: {problem}", file=sys.stderr)
+    if found.problems:
+        return FAILED
+    print(
+        f"{found.parts:,} of {found.all_parts:,} parts are there and unchanged;"
+        f" {found.lives:,} lives lived again are the same"
+    )
+    return DONE

@@ -1,0 +1,114 @@
+"""Tables as Parquet files that say of themselves what they hold, and whether it is still that.
+
+Beside the columns a file has a seal: which lives it holds (their identity), how many rows, steps
+and failures, and a hash of its content. The hash is of the values and not of the bytes of the
+file, so that another version of Parquet seals the same table the same. A table that is too large
+to be held at once is written, and hashed, some rows at a time: a row group each.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+KEY = "animat"
+
+
+@dataclass(frozen=True)
+class Seal:
+    """What a file holds: its identity, rows, steps lived, lives that failed, hash of the values."""
+
+    identity: str
+    rows: int
+    steps: int
+    failed: int
+    content: str
+
+
+def sealed(
+    tables: Iterable[pa.Table], schema: pa.Schema, identity: str, steps: int = 0, failed: int = 0
+) -> bytes:
+    """Return tables of one schema as a Parquet file with a seal, a row group each."""
+    file = io.BytesIO()
+    digest = hashlib.sha256()
+    rows = 0
+    with pq.ParquetWriter(file, schema, compression="zstd") as writer:
+        for table in tables:
+            writer.write_table(table)
+            digest.update(content(table).encode())
+            rows += table.num_rows
+        seal = Seal(identity, rows, steps, failed, digest.hexdigest())
+        writer.add_key_value_metadata({KEY: json.dumps(asdict(seal))})
+    return file.getvalue()
+
+
+def seal_of(path: Path) -> Seal | None:
+    """Return the seal of a file; None if there is no such file, or it is torn or not sealed."""
+    try:
+        metadata = pq.read_metadata(path)
+        seal = Seal(**json.loads((metadata.metadata or {})[KEY.encode()]))
+    except (OSError, ValueError, TypeError, KeyError):
+        return None
+    return seal if seal.rows == metadata.num_rows else None
+
+
+def content_of(path: Path) -> str:
+    """Return the hash of what a sealed file holds now. Raises OSError or ValueError if torn."""
+    digest = hashlib.sha256()
+    with pq.ParquetFile(path) as file:
+        for group in range(file.num_row_groups):
+            digest.update(content(file.read_row_group(group)).encode())
+    return digest.hexdigest()
+
+
+def content(table: pa.Table) -> str:
+    """Return a hash of the names, types and values of a table."""
+    digest = hashlib.sha256()
+    for name in table.column_names:
+        column = table.column(name).combine_chunks()
+        digest.update(f"{name} {len(column)} {_plain_type(column.type)}\0".encode())
+        _add(digest, column)
+    return digest.hexdigest()
+
+
+def _plain_type(kind: pa.DataType) -> pa.DataType:
+    """Return the type of the values; files give other names to what is in a list."""
+    if pa.types.is_list(kind):
+        return pa.list_(kind.value_type)
+    return kind.value_type if pa.types.is_dictionary(kind) else kind
+
+
+def _add(digest: Any, column: pa.Array | pa.ChunkedArray) -> None:
+    if isinstance(column, pa.ChunkedArray):
+        column = column.chunk(0) if column.num_chunks else pa.array([], column.type)
+    digest.update(np.packbits(np.asarray(column.is_valid())).tobytes())
+    if pa.types.is_string(_plain_type(column.type)):
+        _add_texts(digest, column)
+    elif pa.types.is_list(column.type):
+        lengths = column.value_lengths().fill_null(0)
+        digest.update(np.asarray(lengths, np.int64).tobytes())
+        _add(digest, column.flatten())
+    else:
+        zero = pa.scalar(0).cast(column.type)
+        values = column.fill_null(zero).to_numpy(zero_copy_only=False)
+        digest.update(np.ascontiguousarray(values).tobytes())
+
+
+def _add_texts(digest: Any, column: pa.Array) -> None:
+    """Add texts by their numbers in the sorted list of those that occur."""
+    coded = column if pa.types.is_dictionary(column.type) else column.dictionary_encode()
+    codes = np.asarray(coded.indices.fill_null(-1), np.int64)
+    texts = coded.dictionary.to_pylist()
+    used = sorted({texts[code] for code in np.unique(codes) if code >= 0})
+    numbers = np.array([used.index(text) if text in used else -1 for text in [*texts, None]])
+    digest.update(json.dumps(used).encode())
+    digest.update(numbers[codes].tobytes())
