@@ -19,7 +19,7 @@ from animat.mind.networks import Networks
 from animat.numerics.fingerprint import fingerprint
 from animat.robot.khepera import Khepera
 from animat.settings import Settings, SettingsError, explain
-from animat.world.files import WorldFile, world_content
+from animat.world.files import WorldFile, world_file
 from animat.world.world import World
 
 FORMAT = 1
@@ -127,7 +127,6 @@ def head_of(moment: Moment, steps: int, every: int, made: Mapping[str, Any]) -> 
             )
     networks = setting.mind.networks
     world = setting.world
-    content = world_content(world.name, world.layout, world.resolution)
     fields = fields_of(moment.states.dtype)
     return Head(
         format=FORMAT,
@@ -148,7 +147,7 @@ def head_of(moment: Moment, steps: int, every: int, made: Mapping[str, Any]) -> 
             weights=tuple(map(tuple, networks.weights.tolist())),
         ),
         robot=setting.robot,
-        world=WorldFile.model_validate(content, strict=False),
+        world=world_file(world.name, world.layout, world.resolution),
         functions=_fingerprints(setting),
         fields=fields,
         end=_end(moment, fields),

@@ -26,7 +26,7 @@ angle = 0.5                     # rad; optional
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import tomli_w
 from pydantic import AfterValidator, Field, ValidationInfo
@@ -95,17 +95,18 @@ def write_world(path: Path, name: str, layout: Layout, resolution: float) -> Non
     Raises:
         SettingsError: the file cannot be written.
     """
-    write_whole(path, tomli_w.dumps(world_content(name, layout, resolution)).encode())
+    content = world_file(name, layout, resolution).model_dump(exclude_none=True)
+    write_whole(path, tomli_w.dumps(content).encode())
 
 
-def world_content(name: str, layout: Layout, resolution: float) -> dict[str, Any]:
-    """Return what a world's file says of a world, and so all there is to it."""
-    return {
-        "name": name,
-        "resolution": float(resolution),
-        "minimum_gap": float(layout.minimum_gap),
-        "arena": layout.arena.model_dump(),
-        "types": [kind.model_dump(exclude_none=True) for kind in layout.types],
-        "objects": [site.model_dump() for site in layout.placements],
-        "spares": [site.model_dump() for site in layout.spares],
-    }
+def world_file(name: str, layout: Layout, resolution: float) -> WorldFile:
+    """Return a world as its file says it."""
+    return WorldFile.model_construct(
+        name=name,
+        resolution=float(resolution),
+        minimum_gap=float(layout.minimum_gap),
+        arena=layout.arena,
+        types=layout.types,
+        objects=layout.placements,
+        spares=layout.spares,
+    )
