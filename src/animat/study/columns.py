@@ -27,12 +27,10 @@ from animat.world.world import World
 NAMES = ("case", "world", "agent", "seed", "life", "identity", "robot")
 """The columns that tell which life a row is of; a life that failed has them too."""
 
-WEIGHTS = pa.list_(pa.float64())
-
 
 @lru_cache(maxsize=4)
 def schema(plan: Plan, kind: Kind) -> pa.Schema:
-    """Return the columns of a kind of parts: lives in docs/tables.md, teachers likewise."""
+    """Return the columns of a kind of parts; docs/tables.md describes them."""
     known: dict[object, pa.Schema] = {}
     for place, (mind, world) in enumerate(_minds_and_worlds(plan, kind)):
         types = [one.name for one in world.types]
