@@ -57,3 +57,35 @@ def test_every_public_name_is_there(name):
 def test_an_unknown_name_is_refused():
     with pytest.raises(AttributeError, match="no attribute 'Wrld'"):
         animat.Wrld  # noqa: B018  # pyright: ignore[reportAttributeAccessIssue]
+
+
+LIVING = """
+from numba.core import event
+
+compiled = []
+
+class Compilations(event.Listener):
+    def on_start(self, event):
+        compiled.append(event.data["dispatcher"].__name__)
+    def on_end(self, event):
+        pass
+
+with event.install_listener("numba:compile", Compilations()):
+    import animat
+    world = animat.World.random({"TS": 1, "CL": 1}, seed=1, spares=1)
+    life = animat.live(animat.Mind(agent="LEARNING"), world, steps=300, record="all")
+    life.networks.likelihoods(world.types[0].features)
+    knowing = animat.Mind(agent="AF", networks=life.networks)
+    animat.live_many(knowing, world, lives=2, steps=300)
+    animat.live(animat.Mind(), animat.World.abundant(), steps=300)
+print("compiled:", *compiled)
+"""
+
+
+def test_a_second_start_compiles_nothing():
+    for _ in range(2):
+        run = subprocess.run(
+            [sys.executable, "-c", LIVING], capture_output=True, text=True, check=False
+        )
+        assert run.returncode == 0, run.stderr
+    assert run.stdout == "compiled:\n"

@@ -3,6 +3,15 @@
 import numpy as np
 import pytest
 
+from animat.life.digest import digest
+from animat.life.life import live
+from animat.mind.behaviours import curved_wander
+from animat.mind.mind import Mind
+from animat.world.arena import Arena
+from animat.world.world import World
+
+ALL_THERE = np.ones(1, np.uint8)
+
 DRIVES = {
     "hunger": {"a": {"nutrition": 1.0}},
     "fatigue": {"a": {"stamina": 1.0}},
@@ -152,3 +161,24 @@ def test_learning_learner(lived, affording):
 def echo(values, changes, set_points, senses, a, b, out):
     for d in range(len(out)):
         out[d] = values[d]
+
+
+def test_the_search_of_ours_does_the_same_whatever_is_read_in_the_dark(spared):
+    ours, own = (
+        live(Mind(death=False, **given), spared, seed=4, steps=20_000).state
+        for given in ({}, {"wander": curved_wander})
+    )
+    assert digest(ours, ALL_THERE) == digest(own, ALL_THERE)
+
+
+def reader(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+    for reading in readings:
+        if reading > memory[0]:
+            memory[0] = reading
+    return 0, 0
+
+
+def test_a_controller_of_one_s_own_reads_the_noise_of_the_dark():
+    wide = World.random({"TS": 0}, arena=Arena(width=5_000.0, height=5_000.0))
+    state = live(Mind(death=False, wander=reader), wide, seed=4, steps=200).state
+    assert state.memory[0] == 6

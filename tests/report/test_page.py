@@ -16,6 +16,8 @@ from animat.report.page import (
     cells_section,
     claims_section,
     interval,
+    is_page,
+    p_value,
     picture,
     picture_file,
     write_page,
@@ -121,6 +123,30 @@ def test_verdicts_are_marked_as_what_they_are(tmp_path):
     assert badges == ["badge holds", "badge fails", "badge undecided"]
 
 
+def test_warnings_come_first_and_a_table_has_its_title(tmp_path):
+    path = tmp_path / "page.html"
+    table = TableBlock(("a",), [("b",)], title="Its title")
+    section = Section("s", ["said"], tables=[table], notices=["Not finished."])
+    write_page(path, "t", [section], lead=["lead"], notices=["Still running."])
+    reader = read(path)
+    text = [each.strip() for each in reader.text if each.strip()]
+    assert text.index("Still running.") < text.index("lead") < text.index("Not finished.")
+    assert text.index("Not finished.") < text.index("said") < text.index("Its title")
+    assert sum(given.get("class") == "notice" for _, given in reader.tags) == 2
+    assert "caption" in {tag for tag, _ in reader.tags}
+
+
+def test_a_page_of_ours_is_known_for_one(whole, tmp_path):
+    assert is_page(whole)
+    (tmp_path / "other.html").write_text("<html>")
+    assert not is_page(tmp_path / "other.html")
+
+
+def test_every_picture_has_words_in_its_place(whole):
+    words = [given["alt"] for tag, given in read(whole).tags if tag == "img"]
+    assert words == ["a line"]
+
+
 def test_what_a_user_wrote_cannot_become_markup(tmp_path):
     path = tmp_path / "page.html"
     evil = '"><script>alert(1)</script>'
@@ -154,6 +180,15 @@ def test_intervals_in_words():
     assert interval(Estimate(2.0, 1.9, 2.126), ".2f") == "2.00 (1.90\u00a0to\u00a02.13)"
     assert interval(Estimate(120.0, 100.0, float("inf")), ",.0f") == "120 (100\u00a0to\u00a0∞)"
     assert interval(UNKNOWN, ".2f") == "–"
+    assert interval(Estimate(2.0, float("nan"), float("nan")), ".1f") == "2.0"
+    assert interval(Estimate(*[float("inf")] * 3), ".1f") == "∞"
+    assert interval(Estimate(0.9999, 0.9998, 0.9999), ".0%") == "100%"
+
+
+def test_p_values_in_words():
+    assert p_value(0.04321) == "0.043"
+    assert p_value(1e-310) == "< 1e-300"
+    assert p_value(float("nan")) == "–"
 
 
 def test_the_same_content_gives_the_same_page(whole, tmp_path, figure):

@@ -8,7 +8,7 @@ import pytest
 import shapely
 from scipy import ndimage
 
-from animat.world.raster import Raster
+from animat.world.raster import Raster, tiled_room
 
 Drawing = Callable[..., Raster]
 
@@ -31,11 +31,16 @@ def _drawn(polygons: Sequence[shapely.Polygon] = (), resolution: float = 2.0) ->
         clearance = np.minimum(clearance, shapely.distance(polygon.boundary, points))
     clearance[solid > 0] = 0
     sites = len(polygons)
+    clearance = clearance.astype(np.float32)
+    tiles, room = tiled_room(clearance, resolution)
     return Raster(
         resolution=resolution,
+        cells_per_mm=1.0 / resolution,
         border=border,
+        tiles=tiles,
+        room=room,
         solid=solid,
-        clearance=clearance.astype(np.float32),
+        clearance=clearance,
         near_site=np.full((cells, cells, 1), -1, dtype=np.int16),
         near_distance=np.full((cells, cells, 1), np.inf, dtype=np.float32),
         site_x=np.zeros(sites),
@@ -65,8 +70,9 @@ def _dust(seed: int, resolution: float = 2.0, specks: int = 60) -> Raster:
     solid = raster.solid.copy()
     row, column = (rng.uniform(30, 270, (2, specks)) / resolution + raster.border).astype(int)
     solid[row, column] = 2 + np.arange(specks)
-    clearance = ndimage.distance_transform_edt(solid == 0) * resolution
-    return raster._replace(solid=solid, clearance=clearance.astype(np.float32))
+    clearance = (ndimage.distance_transform_edt(solid == 0) * resolution).astype(np.float32)
+    _, room = tiled_room(clearance, resolution)
+    return raster._replace(solid=solid, clearance=clearance, room=room)
 
 
 @pytest.fixture(scope="session")

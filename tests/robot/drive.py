@@ -9,7 +9,7 @@ from animat.robot.collision import collide
 from animat.robot.infrared import read_infrared
 from animat.robot.khepera import Khepera
 from animat.robot.motion import move
-from animat.world.raster import Raster
+from animat.world.raster import Raster, tiled_room
 
 STEPS = 150
 
@@ -26,11 +26,16 @@ def world() -> Raster:
         away = np.sqrt((x - disc_x) ** 2 + (y - disc_y) ** 2) - 25
         solid[away <= 0] = site + 2
         clearance = np.minimum(clearance, np.maximum(away, 0))
+    clearance = clearance.astype(np.float32)
+    tiles, room = tiled_room(clearance, 2.0)
     return Raster(
         resolution=2.0,
+        cells_per_mm=0.5,
         border=border,
+        tiles=tiles,
+        room=room,
         solid=solid,
-        clearance=clearance.astype(np.float32),
+        clearance=clearance,
         near_site=np.full((cells, cells, 1), -1, dtype=np.int16),
         near_distance=np.full((cells, cells, 1), np.inf, dtype=np.float32),
         site_x=np.array([200.0, 110.0]),

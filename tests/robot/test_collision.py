@@ -144,11 +144,11 @@ def test_step_is_undone_where_neither_turn_nor_push_has_room(drawn):
     assert collide(*step, ROBOT, raster, ALL) == (150.0, 252.0, FLAT, True)
 
 
-def test_clearance_culls_nothing_that_is_hit(scattered):
+def test_room_culls_nothing_that_is_hit(scattered):
     rng = np.random.default_rng(6)
     for resolution in (2.0, 3.0):
         raster = scattered(1, resolution)
-        blind = raster._replace(clearance=np.zeros_like(raster.clearance))
+        blind = raster._replace(room=np.zeros_like(raster.room))
         for _ in range(400):
             pose = (*rng.uniform(40, 260, 2).tolist(), rng.uniform(-3.1, 3.1))
             assert touched(*pose, ROBOT, raster, ALL) == touched(*pose, ROBOT, blind, ALL)

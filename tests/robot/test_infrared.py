@@ -28,8 +28,8 @@ def read(pose, raster, settings=MICHEL, present=ALL, words=SILENT):
 
 
 def unculled(raster):
-    """The same world with no clearance to go by: nothing is skipped."""
-    return raster._replace(clearance=np.zeros_like(raster.clearance))
+    """The same world with no room known of: nothing is skipped."""
+    return raster._replace(room=np.zeros_like(raster.room))
 
 
 def covered(x, y, raster, present):

@@ -5,6 +5,7 @@ from pydantic import ValidationError
 
 from animat.settings import SettingsError, read_toml
 from animat.study.settings import LifeSettings, WorldChoice, named
+from animat.world.arena import Arena
 from animat.world.world import World
 
 
@@ -89,3 +90,18 @@ def test_every_mistake_of_a_file_is_told(tmp_path):
     ):
         assert f"{path}: key {line}" in found
     assert len(refused.value.problems) == 5
+
+
+def test_a_random_world_may_have_an_arena_of_its_own(tmp_path):
+    file = tmp_path / "arena.toml"
+    file.write_text('[world]\nlayout = "random"\ncounts = { TS = 2 }\narena = { width = 700.0 }\n')
+    world = read_toml(file, LifeSettings).world.world()
+    assert (world.arena.width, world.arena.height) == (700.0, 1000.0)
+    assert world.layout == World.random({"TS": 2}, arena=Arena(width=700.0)).layout
+
+
+def test_a_published_world_has_its_own_arena(tmp_path):
+    file = tmp_path / "arena.toml"
+    file.write_text("[world]\narena = { width = 700.0 }\n")
+    with pytest.raises(SettingsError, match=r'arena = .* needs layout = "random"'):
+        read_toml(file, LifeSettings)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from animat.life.life import Recording, live
+from animat.life.life import TraceChoice, live
 from animat.life.setting import bring_together
 from animat.mind.mind import Mind
 from animat.study import living
@@ -23,7 +23,7 @@ def test_they_are_those_of_single_lives(what, every, settings, monkeypatch):
     """However often lives were looked at, whether or not they died before the cap."""
     monkeypatch.setattr(living, "LOOK_EVERY", every)
     mind, steps = Mind(**settings), 2_500
-    recording = Recording.parse(what)
+    recording = TraceChoice.parse(what)
     assert recording is not None
     company = Company(bring_together(mind, World.abundant()), 3, steps, back=recording.last or 0)
     watched = company.live(LIVES)
@@ -45,6 +45,6 @@ def test_columns_that_a_mind_has_not_are_null():
     traced = Traced(0, company, company.live(LIVES), LIVES, None, 1)
     wanted = traced.schema()
     wider = wanted.append(wanted.field("hunger").with_name("thirst"))
-    (table,) = traced.tables(Recording(), wider)
+    (table,) = traced.tables(TraceChoice(), wider)
     assert table["thirst"].null_count == table.num_rows == 50
     assert table["hunger"].null_count == 0

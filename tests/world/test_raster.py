@@ -9,10 +9,11 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import ndimage
 
 from animat.world.arena import Arena
 from animat.world.geometry import packed
-from animat.world.raster import BORDER_MM, FIRST_SITE, FREE, WALL, draw
+from animat.world.raster import BORDER_MM, FIRST_SITE, FREE, MOST_ROOM, TILE, WALL, draw
 from animat.world.shapes import area_and_centroid
 
 NONE = np.empty((0, 0))
@@ -93,6 +94,29 @@ def test_occupancy_clearance_and_near_sites_are_shapelys(seed, sites, horizon, r
     assert ((np.diff(in_order, axis=2) > 0) | (in_order[..., 1:] < 0)).all()
 
 
+def untiled(raster):
+    """Room [R, C] in rows and columns."""
+    columns = raster.tiles
+    tiles = raster.room.reshape(-1, columns, TILE, TILE)
+    rows, there = raster.solid.shape
+    return tiles.swapaxes(1, 2).reshape(-1, columns * TILE)[:rows, :there]
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.integers(0, 2**32), st.integers(0, 7), st.sampled_from([0.7, 2.0, 3.7, 10.0]))
+def test_room_is_free_round_every_point_of_a_cell_and_nearly_all_there_is(seed, sites, resolution):
+    arena, outlines, _ = random_world(seed, sites, side=200.0)
+    raster = drawn(arena, outlines, 0.0, resolution)
+    room = untiled(raster).astype(float)
+    # From the middle of the nearest solid cell to that of each: up to a diagonal more than from
+    # any point of the one to any point of the other.
+    apart = ndimage.distance_transform_edt(raster.solid == FREE) * resolution
+    diagonal = math.sqrt(2.0) * resolution
+    assert (room[room > 0] <= (apart - diagonal)[room > 0]).all()
+    most = np.minimum(raster.clearance - diagonal - 1.1, MOST_ROOM)
+    assert (room >= most).all()
+
+
 def test_the_cell_of_a_point_is_where_the_contract_says():
     square = 20.0 * np.array([(-1.0, -1), (1, -1), (1, 1), (-1, 1)])
     outlines = packed([square], np.array([(300.0, 700.0, 0.0)]))
@@ -133,8 +157,9 @@ def test_of_two_sites_equally_near_the_first_is_listed_first():
 def test_fields_have_the_types_compiled_code_is_told():
     arena, outlines, _ = random_world(1, 3)
     raster = drawn(arena, outlines, 50.0, 4.0)
-    kinds = {name: getattr(raster, name).dtype for name in raster._fields[2:]}
+    kinds = {name: getattr(raster, name).dtype for name in raster._fields[4:]}
     assert kinds == {
+        "room": np.uint8,
         "solid": np.int16, "clearance": np.float32, "near_site": np.int16,
         "near_distance": np.float32, "site_x": np.float64, "site_y": np.float64,
         "site_type": np.int64, "features": np.float64, "affords": np.float64,
@@ -160,7 +185,7 @@ def fingerprint():
     outlines = packed([square, square], np.array([(60.0, 70.0, 0.3), (110.0, 80.0, 2.0)]))
     raster = drawn(Arena(width=160.0, height=150.0), outlines, 40.0, 6.0)
     digest = hashlib.sha256()
-    for field in raster[2:6]:
+    for field in raster[4:9]:
         digest.update(np.ascontiguousarray(field).tobytes())
     return digest.hexdigest()
 

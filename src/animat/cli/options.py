@@ -20,6 +20,9 @@ SettingsFile = Annotated[
 ResultsDirectory = Annotated[
     Path, typer.Argument(metavar="DIR", help="The results directory of a study.")
 ]
+Out = Annotated[Path | None, typer.Option(help="The directory; results/NAME unless given.")]
+Threads = Annotated[int | None, typer.Option(help="As many as cores unless given.", min=1)]
+Quick = Annotated[bool, typer.Option("--quick", help="Small, for a look.")]
 Seed = Annotated[int, typer.Option(help="The seed of everything random.", min=0, max=2**63 - 1)]
 
 # Only declared: whoever explains an error looks for it, as an unknown option ends the reading.

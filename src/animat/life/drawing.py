@@ -9,16 +9,13 @@ import numpy as np
 
 from animat.report.figures.life import life_figure
 from animat.report.figures.worlds import RobotDrawing, WorldDrawing
-from animat.robot.khepera import LINEAR_REACH, Khepera
+from animat.robot.khepera import REACH, Khepera
 from animat.world.world import World
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from animat.life.life import Life
-
-REACH = {"michel1996": 58.0, "linear": LINEAR_REACH}
-"""How far a sensor of each model sees, in mm."""
 
 SPREAD = math.radians(20.0)
 """Half the opening angle a sensor is drawn with; its probes reach 18 mm aside at 40 mm."""

@@ -27,11 +27,18 @@ if TYPE_CHECKING:
     from animat.report.estimates import Estimate
     from animat.report.survival import DeathCount
 
-CHUNK = 32
-"""Lives that a thread takes at a time."""
+CHUNK, LARGEST_CHUNK = 32, 8192
+"""Lives that a thread takes at a time: at least, and at most where lives are short."""
+
+STEPS_OF_A_CHUNK = 2_000_000
+"""What a chunk of short lives comes to, so that the table of it costs little beside them."""
 
 SLICE = 10_000
 """Steps of each life of a chunk between two looks at the outside."""
+
+
+TURNS = 8
+"""How many times a thread takes a chunk at least, of lives enough."""
 
 
 @dataclass(frozen=True)
@@ -102,13 +109,15 @@ def live_chunks(
     threads = threads or os.cpu_count() or 1
     stop = Event()
 
+    size = chunk_size(steps, lives, threads)
+
     def chunk(start: int) -> dict[str, pa.Array]:
-        indices = np.arange(start, min(start + CHUNK, first + lives), dtype=np.uint64)
+        indices = np.arange(start, min(start + size, first + lives), dtype=np.uint64)
         own = None if weights is None else weights[indices % np.uint64(len(weights))]
         states = live_states(setting, seed, indices, steps, own, stop, progress)
         return summary(setting, seed, indices, states)
 
-    starts = iter(range(first, first + lives, CHUNK))
+    starts = iter(range(first, first + lives, size))
     under_way: deque[Future[dict[str, pa.Array]]] = deque()
     with ThreadPoolExecutor(threads) as pool:
         try:
@@ -120,6 +129,15 @@ def live_chunks(
                 yield under_way.popleft().result()
         finally:
             stop.set()
+
+
+def chunk_size(steps: int, lives: int, threads: int) -> int:
+    """Return how many lives of up to `steps` steps a thread takes at a time.
+
+    Few enough that every thread takes several times, and none waits long for the last.
+    """
+    share = -(-lives // (TURNS * threads))
+    return max(min(STEPS_OF_A_CHUNK // steps, LARGEST_CHUNK, share), CHUNK)
 
 
 def live_states(

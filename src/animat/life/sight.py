@@ -13,8 +13,8 @@ OUT_OF_SIGHT = math.inf
 @compiled
 def row_and_column(x, y, raster):
     """Return the cell of a point."""
-    row = int(y / raster.resolution + raster.border)
-    column = int(x / raster.resolution + raster.border)
+    row = int(y * raster.cells_per_mm + raster.border)
+    column = int(x * raster.cells_per_mm + raster.border)
     return row, column
 
 

@@ -5,7 +5,7 @@ place calls its four parts, and sets the motor commands (`left`, `right`) before
 a selector. Every function changes `state`, the record of `animat.life.state`, in place; `present`
 [S] tells which sites hold an object.
 
-    sense       read the infrared sensors
+    sense       read the infrared sensors; `step` leaves out what the search would not look at
     metabolise  the variables drift, the drives follow, a life may end
     decide      wander, meet an object, choose a behaviour, steer
     act         move, collide, and take the outcome of an act that ends
@@ -23,7 +23,7 @@ from animat.numerics.compiled import compiled
 from animat.numerics.streams import MOTORS, SENSORS, bits, uniforms
 from animat.numerics.streams import WANDER as WANDERING
 from animat.robot.collision import collide
-from animat.robot.infrared import read_infrared
+from animat.robot.infrared import is_dark, read_infrared
 from animat.robot.motion import move
 
 
@@ -32,7 +32,7 @@ def step(state, mind, robot, raster, present, functions, seed, life):
     """Live one step. A life that ends in it is `dead` afterwards."""
     begin(state)
     if state.mode == WANDER:
-        sense(state, robot, raster, present, seed, life)
+        sense_what_is_looked_at(state, mind, robot, raster, present, seed, life)
     metabolise(state, mind, functions)
     if not state.dead:
         decide(state, mind, robot, raster, present, functions, seed, life)
@@ -45,6 +45,16 @@ def begin(state):
     """Clear what is said of one step only."""
     state.event = 0
     state.reward = 0
+
+
+@compiled
+def sense_what_is_looked_at(state, mind, robot, raster, present, seed, life):
+    """Sense as much as the search will look at: not the noise of sensors that see nothing."""
+    if behaviours.ignores_the_dark(mind.wander) and is_dark(state.x, state.y, robot, raster):
+        for n in range(len(state.readings)):
+            state.readings[n] = 0
+    else:
+        sense(state, robot, raster, present, seed, life)
 
 
 @compiled

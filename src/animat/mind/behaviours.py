@@ -43,7 +43,7 @@ def curved_wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
     left_alarm = 0.0
     right_alarm = 0.0
     for n in range(len(readings)):
-        if aheads[n] > 0.5 and readings[n] > ALARM:
+        if readings[n] > ALARM and aheads[n] > 0.5:
             if sides[n] > 0.0:
                 left_alarm += readings[n]
             else:
@@ -75,6 +75,12 @@ def behind(readings, aheads):
         if aheads[n] < -0.5:
             total += readings[n]
     return total
+
+
+@compiled
+def ignores_the_dark(controller):
+    """Tell whether a controller does the same whatever sensors read that see nothing."""
+    return controller == CURVED_WANDER
 
 
 @compiled

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animat.mind.affordance import feed_forward, weight_count
+from animat.numerics.compiled import kernel
 from animat.settings import nearest
 
 
@@ -65,8 +66,13 @@ class Networks:
         if missing:
             raise ValueError(f"features lack {', '.join(missing)}")
         inputs = np.array([features[name] for name in self.features])
-        hidden = np.zeros(self.hidden)
-        return {
-            behaviour: float(feed_forward(inputs, self.weights[b], hidden))
-            for b, behaviour in enumerate(self.behaviours)
-        }
+        outputs = np.zeros(len(self.behaviours))
+        ask(inputs, self.weights, np.zeros(self.hidden), outputs)
+        return dict(zip(self.behaviours, outputs.tolist(), strict=True))
+
+
+@kernel
+def ask(features, weights, hidden, outputs):
+    """Fill in what each of B networks, `weights` [B, W], puts out for `features` [F]."""
+    for b in range(len(outputs)):
+        outputs[b] = feed_forward(features, weights[b], hidden)

@@ -10,6 +10,7 @@ import numpy as np
 
 from animat.mind import affordance, behaviours, drives, homeostasis, selection
 from animat.mind.physiology import Variable
+from animat.numerics.compiled import kernel
 from animat.numerics.elementary import exponential
 from animat.settings import nearest
 
@@ -119,6 +120,7 @@ def parameters(mind: Mind, affordances: Sequence[str]) -> np.record:
     record = np.zeros(1, dtype)[0]
     for v, variable in enumerate(variables.values()):
         _fill_variable(record, v, variable, mind)
+    shrink(record.rate, record.factor)
     names = list(variables)
     for d, drive in enumerate(mind.drives.values()):
         for matrix, coefficients in ((record.a, drive.a), (record.b, drive.b)):
@@ -161,6 +163,13 @@ def parameters(mind: Mind, affordances: Sequence[str]) -> np.record:
     return record
 
 
+@kernel
+def shrink(rates, factors):
+    """Fill in exp(-rate), what a distance shrinks to in a step, for rates [V] per step."""
+    for v in range(len(rates)):
+        factors[v] = exponential(-rates[v])
+
+
 def _fill_variable(record: np.record, v: int, variable: Variable, mind: Mind) -> None:
     deficit = variable.is_deficit
     law = LAWS.get(variable.law, homeostasis.CUSTOM_LAW)
@@ -169,7 +178,6 @@ def _fill_variable(record: np.record, v: int, variable: Variable, mind: Mind) ->
     record.law[v] = law
     for name in ("low", "high", "rate", "set_point", "start"):
         record[name][v] = getattr(variable, name)
-    record.factor[v] = exponential(-variable.rate)
     record.sense[v] = 1.0 if deficit else -1.0
     record.dies_below[v] = record.drift_floor[v] = -math.inf
     record.dies_above[v] = record.drift_ceiling[v] = math.inf

@@ -93,13 +93,13 @@ def engine_stamp() -> str:
 def _identified(dispatcher: Any, function: Callable[..., Any]) -> Any:
     """Give a compiled function an identity that a later process finds again."""
     if dispatcher is not function:
-        known = identity(function)
-        if known is not None:
-            dispatcher._set_uuid(known)
+        identity = _identity(function)
+        if identity is not None:
+            dispatcher._set_uuid(identity)
     return dispatcher
 
 
-def identity(function: Callable[..., Any]) -> str | None:
+def _identity(function: Callable[..., Any]) -> str | None:
     """Return a text that is equal only for functions that compute the same, or None.
 
     It covers the whole source file, for what the function calls there, the compiled functions that

@@ -6,12 +6,13 @@ says so, *fails* if the whole interval says the opposite, *undecided* if it says
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
 import pyarrow as pa
+from numpy.typing import NDArray
 
 from animat.report.estimates import (
     LEVEL,
@@ -79,6 +80,39 @@ def inside(estimate: Estimate, band: tuple[float, float]) -> Verdict:
     return "fails" if estimate.high < band[0] or estimate.low > band[1] else "undecided"
 
 
+def lifespan_verdicts(
+    rich: Estimate, poor: Estimate, worlds: Iterable[Estimate], gain: Estimate
+) -> dict[str, Verdict]:
+    """The verdicts on C1 to C6, by what they are about.
+
+    `rich` and `poor` are the ratios of mean lifespans informed / blind in the abundant and in the
+    scarce world, `worlds` the ratios abundant / scarce of each agent, `gain` is `rich` - `poor`.
+    """
+    return {
+        "C1": above(rich, 1.0),
+        "C2": above(poor, 1.0),
+        "C3": _worst(above(each, 1.0) for each in worlds),
+        "C4": inside(rich, ABUNDANT_GAIN),
+        "C5": inside(poor, SCARCE_GAIN),
+        "C6": above(gain, 0.0),
+    }
+
+
+def learning_verdict(distances: Iterable[Estimate]) -> Verdict:
+    """The verdict on C7 from the distance of each mean likelihood from Table 1."""
+    return _worst(_within(distance, FARTHEST) for distance in distances)
+
+
+def distance_from_table_1(likelihoods: pa.Table) -> NDArray[np.float64]:
+    """How far each row's `likelihood` is from what its `network` should say of its `object`.
+
+    From Table 1's `afforded` of 0.5 on it should say 1; the network of `INTERACT` always.
+    """
+    afforded = column(likelihoods, "afforded") >= 0.5
+    truth = (afforded | (column(likelihoods, "network") == INTERACT)).astype(np.float64)
+    return np.abs(column(likelihoods, "likelihood").astype(np.float64) - truth)
+
+
 def judge_lifespans(
     lives: pa.Table,
     *,
@@ -104,13 +138,18 @@ def judge_lifespans(
     gain, gain_how = _difference_of_gains(
         [rich_informed, rich_blind, poor_informed, poor_blind], seed, resamples
     )
+    worlds = {
+        blind: _ratio(rich_blind, poor_blind, seed, resamples),
+        informed: _ratio(rich_informed, poor_informed, seed, resamples),
+    }
+    verdicts = lifespan_verdicts(rich, poor, (ratio for ratio, _ in worlds.values()), gain)
     return [
         Claim(
             "C1",
             f"{informed} outlives {blind} in the abundant world",
             "ratio > 1",
             *rich,
-            above(rich, 1.0),
+            verdicts["C1"],
             f"ratio of mean lifespans {informed}/{blind} above 1; {rich_how}",
         ),
         Claim(
@@ -118,22 +157,18 @@ def judge_lifespans(
             f"{informed} outlives {blind} in the scarce world",
             "ratio > 1",
             *poor,
-            above(poor, 1.0),
+            verdicts["C2"],
             f"ratio of mean lifespans {informed}/{blind} above 1; {poor_how}",
         ),
-        _worlds(
-            {blind: (rich_blind, poor_blind), informed: (rich_informed, poor_informed)},
-            seed,
-            resamples,
-        ),
-        _magnitude("C4", "abundant", "nearly 100%", rich, ABUNDANT_GAIN, rich_how),
-        _magnitude("C5", "scarce", "nearly 50%", poor, SCARCE_GAIN, poor_how),
+        _worlds(worlds, verdicts["C3"]),
+        _magnitude("C4", "abundant", "nearly 100%", rich, ABUNDANT_GAIN, verdicts, rich_how),
+        _magnitude("C5", "scarce", "nearly 50%", poor, SCARCE_GAIN, verdicts, poor_how),
         Claim(
             "C6",
             "the gain in the abundant world exceeds the gain in the scarce world",
             "2 − 1.5 = 0.5 > 0",
             *gain,
-            above(gain, 0.0),
+            verdicts["C6"],
             f"difference of the two ratios {informed}/{blind} above 0; {gain_how}",
         ),
     ]
@@ -151,7 +186,6 @@ def judge_learning(likelihoods: pa.Table, *, seed: int = 0, resamples: int = RES
     network = column(likelihoods, "network")
     kind = column(likelihoods, "object")
     likelihood = column(likelihoods, "likelihood").astype(np.float64)
-    truth = ((column(likelihoods, "afforded") >= 0.5) | (network == INTERACT)).astype(np.float64)
     pairs = list(dict.fromkeys(zip(network.tolist(), kind.tolist(), strict=True)))
     each, rows = np.unique(seeds, return_counts=True)
     if not each.size:
@@ -159,7 +193,7 @@ def judge_learning(likelihoods: pa.Table, *, seed: int = 0, resamples: int = RES
     triples = set(zip(seeds.tolist(), network.tolist(), kind.tolist(), strict=True))
     if np.any(rows != len(pairs)) or len(triples) != len(seeds):
         raise ValueError("every seed needs one likelihood for each network and object type")
-    away = np.abs(likelihood - truth)
+    away = distance_from_table_1(likelihoods)
     parts, distances = [], []
     for name, thing in pairs:
         chosen = (network == name) & (kind == thing)
@@ -177,7 +211,7 @@ def judge_learning(likelihoods: pa.Table, *, seed: int = 0, resamples: int = RES
         farthest.value,
         farthest.low,
         farthest.high,
-        min((part.verdict for part in parts), key=_ORDER.index),
+        learning_verdict(distances),
         f"largest distance of a mean likelihood from Table 1 ({parts[worst].label}), at most "
         f"{FARTHEST}; {learnt} of {each.size} robots are within it everywhere; {LEVEL:.0%} "
         "bootstrap interval over robots",
@@ -237,13 +271,8 @@ def _how(tables: list[pa.Table], paired: bool) -> str:
     return words
 
 
-def _worlds(agents: dict[str, tuple[pa.Table, pa.Table]], seed: int, resamples: int) -> Claim:
-    parts = []
-    hows = []
-    for agent, (rich, poor) in agents.items():
-        estimate, how = _ratio(rich, poor, seed, resamples)
-        parts.append(Part(agent, *estimate, above(estimate, 1.0)))
-        hows.append(how)
+def _worlds(agents: dict[str, tuple[Estimate, str]], verdict: Verdict) -> Claim:
+    parts = [Part(agent, *ratio, above(ratio, 1.0)) for agent, (ratio, _) in agents.items()]
     worst = min(parts, key=lambda part: (_ORDER.index(part.verdict), part.low))
     each = ", ".join(f"{part.label} {part.ours:.2f} {part.verdict}" for part in parts)
     return Claim(
@@ -253,22 +282,28 @@ def _worlds(agents: dict[str, tuple[pa.Table, pa.Table]], seed: int, resamples: 
         worst.ours,
         worst.low,
         worst.high,
-        worst.verdict,
+        verdict,
         "ratio of mean lifespans abundant/scarce above 1 for both agents, shown for the one that "
-        f"decides ({worst.label}): {each}; {hows[parts.index(worst)]}",
+        f"decides ({worst.label}): {each}; {agents[worst.label][1]}",
         tuple(parts),
     )
 
 
 def _magnitude(
-    name: str, world: str, words: str, estimate: Estimate, band: tuple[float, float], how: str
+    name: str,
+    world: str,
+    words: str,
+    estimate: Estimate,
+    band: tuple[float, float],
+    verdicts: dict[str, Verdict],
+    how: str,
 ) -> Claim:
     return Claim(
         name,
         f"knowing affordances lengthens life by {words} in the {world} world",
         f"ratio ≈ {sum(band) / 2:g}",
         *estimate,
-        inside(estimate, band),
+        verdicts[name],
         f"ratio of mean lifespans within {band[0]} to {band[1]}; {how}",
     )
 
@@ -278,3 +313,7 @@ def _within(estimate: Estimate, bound: float) -> Verdict:
     if estimate.high <= bound:
         return "holds"
     return "fails" if estimate.low > bound else "undecided"
+
+
+def _worst(verdicts: Iterable[Verdict]) -> Verdict:
+    return min(verdicts, key=_ORDER.index)

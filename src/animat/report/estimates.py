@@ -25,7 +25,9 @@ the square of their number, and its correction shrinks with the root of it; beyo
 
 _BATCH_NUMBERS = 4_000_000
 
-Method = Literal["BCa", "percentile"]
+Method = Literal["BCa", "percentile", "normal"]
+"""`normal` draws the means of many values from the normal law that they follow then, instead of
+the values: percentiles at no cost. It is never chosen by itself, and only for means of pairs."""
 
 
 class Estimate(NamedTuple):
@@ -106,6 +108,62 @@ def _interval(
     return float(interval.low), float(interval.high)
 
 
+def of_means(
+    samples: Sequence[NDArray[np.float64]],
+    function: Callable[..., NDArray[np.float64]],
+    *,
+    paired: bool = False,
+    seed: int = 0,
+    resamples: int = RESAMPLES,
+    method: Method | None = None,
+) -> Estimate:
+    """`function` of the means of `samples`, arrays [n_i], with its bootstrap interval.
+
+    `function` takes a number, or an array of them, for each sample. `method` "normal" needs
+    `paired`; else as in `bootstrapped`.
+    """
+    if method == "normal":
+        return _of_normal_means(np.stack(samples), function, seed, resamples)
+    if any(len(sample) == 0 for sample in samples):
+        raise ValueError("an estimate needs at least one value in every sample")
+    # What does not vary needs no drawing; of a single value it cannot be told.
+    fixed = [
+        sample[0] if len(sample) > 1 and np.all(sample == sample[0]) else None for sample in samples
+    ]
+    varying = [sample for sample, value in zip(samples, fixed, strict=True) if value is None]
+
+    def statistic(*drawn: NDArray[np.float64], axis: int = -1) -> NDArray[np.float64]:
+        means = iter(drawn)
+        return function(
+            *(np.mean(next(means), axis=axis) if value is None else value for value in fixed)
+        )
+
+    return bootstrapped(
+        varying or samples[:1],
+        statistic if varying else lambda one, axis: function(*fixed),
+        paired=paired,
+        seed=seed,
+        resamples=resamples,
+        method=method,
+    )
+
+
+def _of_normal_means(
+    samples: NDArray[np.float64],
+    function: Callable[..., NDArray[np.float64]],
+    seed: int,
+    resamples: int,
+) -> Estimate:
+    """A function of the means of `samples` [k, n], whose joint law is taken for normal."""
+    means = samples.mean(axis=1)
+    spread = np.atleast_2d(np.cov(samples)) / samples.shape[1]
+    rng = np.random.default_rng(seed)
+    drawn = rng.multivariate_normal(means, spread, resamples, check_valid="ignore", method="eigh")
+    tails = (1 - LEVEL) / 2, (1 + LEVEL) / 2
+    low, high = np.quantile(function(*drawn.T), tails)
+    return Estimate(float(function(*means)), float(low), float(high))
+
+
 def mean(
     values: NDArray[np.float64],
     *,
@@ -114,7 +172,7 @@ def mean(
     method: Method | None = None,
 ) -> Estimate:
     """Mean of `values` [n] with its bootstrap interval."""
-    return bootstrapped([values], np.mean, seed=seed, resamples=resamples, method=method)
+    return of_means([values], lambda one: one, seed=seed, resamples=resamples, method=method)
 
 
 def ratio_of_means(
@@ -133,17 +191,11 @@ def ratio_of_means(
     """
     if len(denominator) and not np.any(denominator):
         raise ValueError("the ratio of means has a denominator of 0")
-    return bootstrapped(
+    return of_means(
         [numerator, denominator],
-        _ratio,
+        np.divide,
         paired=paired,
         seed=seed,
         resamples=resamples,
         method=method,
     )
-
-
-def _ratio(
-    numerator: NDArray[np.float64], denominator: NDArray[np.float64], axis: int = -1
-) -> NDArray[np.float64]:
-    return np.mean(numerator, axis=axis) / np.mean(denominator, axis=axis)

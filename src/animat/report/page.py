@@ -25,6 +25,14 @@ PAPER = (
     "Object Affordances: First Experiments Using a Simulated Khepera Robot."
 )
 
+NOT_KNOWN, ENDLESS = "–", "∞"
+
+GENERATOR = '<meta name="generator" content="animat">'
+"""By this line in its head a page is known for one of ours."""
+
+SMALLEST_P = 1e-300
+"""Smaller p values are not told from each other."""
+
 LARGEST_SVG = 400_000
 """A picture whose SVG has more bytes is put into the page as PNG."""
 
@@ -38,11 +46,12 @@ class Badge:
 
 @dataclass(frozen=True)
 class TableBlock:
-    """A table: names of the columns, rows of texts or badges, and what is said below it."""
+    """A table: names of the columns, rows of texts or badges, what is said below and above it."""
 
     columns: Sequence[str]
     rows: Sequence[Sequence[str | Badge]]
     note: str = ""
+    title: str = ""
 
 
 @dataclass(frozen=True)
@@ -64,7 +73,8 @@ class Picture:
 class Section:
     """A part of the page. Its blocks come in the order of the fields; all are optional.
 
-    `terms` are names with their values; `code` is shown as it is typed.
+    `terms` are names with their values; `code` is shown as it is typed; `notices`, warnings that
+    nobody should miss, come before all else.
     """
 
     title: str
@@ -74,23 +84,42 @@ class Section:
     tables: Sequence[TableBlock] = ()
     pictures: Sequence[Picture] = ()
     code: str = ""
+    notices: Sequence[str] = ()
 
 
 def write_page(
-    path: Path | str, title: str, sections: Sequence[Section], *, lead: Sequence[str] = ()
+    path: Path | str,
+    title: str,
+    sections: Sequence[Section],
+    *,
+    lead: Sequence[str] = (),
+    notices: Sequence[str] = (),
 ) -> None:
-    """Write the page to `path`, whole or not at all. `lead` are paragraphs before all sections.
+    """Write the page to `path`, whole or not at all.
 
-    Raises SettingsError if it cannot be written.
+    `notices` and then `lead` are paragraphs before all sections. Raises SettingsError if it cannot
+    be written.
     """
     source = files("animat.report").joinpath("templates/report.html.j2").read_text("utf-8")
     environment = Environment(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     text = environment.from_string(source).render(
-        title=title, lead=lead, sections=sections, paper=PAPER, is_badge=_is_badge
+        title=title,
+        notices=notices,
+        lead=lead,
+        sections=sections,
+        paper=PAPER,
+        generator=GENERATOR,
+        is_badge=_is_badge,
     )
     write_whole(Path(path), text.encode())
+
+
+def is_page(path: Path) -> bool:
+    """Whether a file is a page that was written here. Raises OSError if it cannot be read."""
+    with path.open("rb") as file:
+        return GENERATOR.encode() in file.read(1_000)
 
 
 def picture(fig: Figure, caption: str, alternative: str) -> Picture:
@@ -167,16 +196,28 @@ def cells_section(summaries: Sequence[CellSummary], title: str = "The cells") ->
 
 
 def interval(estimate: Estimate, form: str) -> str:
-    """An estimate as text, such as "2.01 (1.95 to 2.07)"; a dash for what is not known."""
+    """An estimate as text, such as "2.01 (1.95 to 2.07)"; a dash for what is not known.
+
+    A value whose interval is not known, or has no width, stands alone.
+    """
     value, low, high = (_number(number, form) for number in estimate)
+    if {low, high} in ({NOT_KNOWN}, {value}):
+        return value
     # Spaces that do not break keep the interval on one line of a narrow column.
-    return value if value == "–" else f"{value} ({low}\u00a0to\u00a0{high})"
+    return f"{value} ({low}\u00a0to\u00a0{high})"
+
+
+def p_value(p: float) -> str:
+    """A p value as text; a dash for a test that could not be made."""
+    if math.isnan(p):
+        return NOT_KNOWN
+    return f"{p:.2g}" if p > SMALLEST_P else f"< {SMALLEST_P:g}"
 
 
 def _number(number: float, form: str) -> str:
     if math.isnan(number):
-        return "–"
-    return "∞" if math.isinf(number) else format(number, form)
+        return NOT_KNOWN
+    return ENDLESS if math.isinf(number) else format(number, form)
 
 
 def _of(number: Claim | Part) -> str:

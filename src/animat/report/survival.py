@@ -153,12 +153,14 @@ def lifespan_ratio(
 
 def causes(table: pa.Table) -> list[DeathCount]:
     """How the lives ended, the most frequent way first, those alive at the cap last."""
-    columns = ("censored", "death_variable", "death_side", "death_cause")
-    counts = Counter(zip(*(table.column(name).to_pylist() for name in columns), strict=True))
+    columns = ["censored", "death_variable", "death_side", "death_cause"]
+    counted = (
+        table.select(columns).unify_dictionaries().group_by(columns).aggregate([([], "count_all")])
+    )
     ways: dict[tuple[str, str, str], int] = Counter()
-    for (censored, variable, side, cause), count in counts.items():
-        way = (ALIVE, "", "") if censored else (variable, side, cause)
-        ways[way] += count
+    for row in counted.to_pylist():
+        way = (ALIVE, "", "") if row["censored"] else tuple(row[name] for name in columns[1:])
+        ways[way] += row["count_all"]
     order = sorted(ways, key=lambda way: (way[0] == ALIVE, -ways[way], way))
     return [DeathCount(*way, ways[way], share(ways[way], table.num_rows)) for way in order]
 

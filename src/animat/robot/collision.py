@@ -75,14 +75,14 @@ def touched(
 
     Of several the front counts first, then the back, then the others in their order.
     """
-    u = x / raster.resolution + raster.border
-    v = y / raster.resolution + raster.border
+    u = x * raster.cells_per_mm + raster.border
+    v = y * raster.cells_per_mm + raster.border
     if room(u, v, raster) > robot.ring_radius:
         return CLEAR
     sine, cosine = sine_cosine(heading)
     for point in ORDER:
-        ring_x = robot.ring_x[point] / raster.resolution
-        ring_y = robot.ring_y[point] / raster.resolution
+        ring_x = robot.ring_x[point] * raster.cells_per_mm
+        ring_y = robot.ring_y[point] * raster.cells_per_mm
         ring_u = u + (cosine * ring_x - sine * ring_y)
         ring_v = v + (sine * ring_x + cosine * ring_y)
         if occupied(ring_u, ring_v, raster.solid, present):

@@ -4,10 +4,10 @@
 sensor; `linear` (as in Webots) sends one ray. Both read whole numbers 0..1023, and cut off what is
 behind the point, as an assignment to an integer does.
 
-Most points need no look at all. The clearance under the robot's centre says how far round it
-everything is free, and with that how many probes of every sensor are; the clearance before a sensor
-may say the same of all that are left. Both skip only what is free for certain: what is read is the
-same with and without them.
+Most points need no look at all. The room under the robot's centre says whether there is anything
+to see at all; the room before a sensor, whether it sees any of it; the room under a sensor, which
+of its probes are free. All skip only what is free for certain: what is read is the same with and
+without them.
 """
 
 from __future__ import annotations
@@ -31,11 +31,8 @@ DARK_READINGS = 7
 HALF_WORD = np.uint64(16)
 HALF_WORD_MASK = np.uint64(0xFFFF)
 
-# Circles before a sensor, centre and radius in mm: round all its probes, and round those that are
-# farther than 20 mm.
-ALL_CENTRE, ALL_RADIUS = 31.0, 27.3
-FAR_CENTRE, FAR_RADIUS = 38.94, 19.07
-NEAR_PROBES = 20.0
+# The circle before a sensor that holds all its probes, in mm.
+PROBES_CENTRE, PROBES_RADIUS = 31.0, 27.3
 
 # Past the border of a cell by so much (in cells), a ray is in the next one whatever the rounding.
 NUDGE = 1e-9
@@ -59,13 +56,21 @@ def read_infrared(
     `present[S]` tells which sites hold their object. `words` are four random words of 32 bits,
     one block of the stream SENSORS, and all the noise of a step (see `sensor_noise`).
     """
-    u = x / raster.resolution + raster.border
-    v = y / raster.resolution + raster.border
+    u = x * raster.cells_per_mm + raster.border
+    v = y * raster.cells_per_mm + raster.border
     free = room(u, v, raster) - robot.sensor_radius
     if robot.infrared == MICHEL1996:
         _read_michel1996(u, v, heading, free, robot, raster, present, words, readings)
     else:
         _read_linear(u, v, heading, free, robot, raster, present, words, readings)
+
+
+@compiled
+def is_dark(x: float, y: float, robot: np.record, raster: Raster) -> bool:
+    """Tell whether there is nothing for any sensor to see of a robot at (x, y) mm, for certain."""
+    u = x * raster.cells_per_mm + raster.border
+    v = y * raster.cells_per_mm + raster.border
+    return room(u, v, raster) > robot.sensor_radius + robot.reach
 
 
 @compiled
@@ -104,32 +109,31 @@ def _read_michel1996(
     readings: NDArray[np.int64],
 ) -> None:
     """Read all sensors of a robot at (u, v), in cells; within `free` mm of each all is free."""
-    if free > 58.0:
+    if free > robot.reach:
         for sensor in range(SENSORS):
             readings[sensor] = unlit(sensor_noise(words, sensor), robot)
         return
     sine, cosine = sine_cosine(heading)
-    cosine /= raster.resolution  # from here on 1 mm is measured in cells
-    sine /= raster.resolution
-    centre, radius = ALL_CENTRE, ALL_RADIUS
-    if free > NEAR_PROBES:
-        centre, radius = FAR_CENTRE, FAR_RADIUS
+    cosine *= raster.cells_per_mm  # from here on 1 mm is measured in cells
+    sine *= raster.cells_per_mm
     for sensor in range(SENSORS):
         x, y = robot.sensor_x[sensor], robot.sensor_y[sensor]
         ahead_x, ahead_y = robot.sensor_cosine[sensor], robot.sensor_sine[sensor]
         noise = sensor_noise(words, sensor)
-        mid_x, mid_y = x + centre * ahead_x, y + centre * ahead_y
+        mid_x, mid_y = x + PROBES_CENTRE * ahead_x, y + PROBES_CENTRE * ahead_y
         mid_u = u + (cosine * mid_x - sine * mid_y)
         mid_v = v + (sine * mid_x + cosine * mid_y)
-        if room(mid_u, mid_v, raster) > radius:
+        if room(mid_u, mid_v, raster) > PROBES_RADIUS:
             readings[sensor] = unlit(noise, robot)
             continue
+        sensor_u = u + (cosine * x - sine * y)
+        sensor_v = v + (sine * x + cosine * y)
         light = light_of_probes(
-            u + (cosine * x - sine * y),
-            v + (sine * x + cosine * y),
+            sensor_u,
+            sensor_v,
             cosine * ahead_x - sine * ahead_y,
             sine * ahead_x + cosine * ahead_y,
-            free,
+            room(sensor_u, sensor_v, raster),
             raster.solid,
             present,
         )
@@ -260,13 +264,13 @@ def _read_linear(
     readings: NDArray[np.int64],
 ) -> None:
     """Read all sensors of a robot at (u, v), in cells; within `free` mm of each all is free."""
-    if free > LINEAR_REACH:
+    if free > robot.reach:
         for sensor in range(SENSORS):
             readings[sensor] = 0
         return
     sine, cosine = sine_cosine(heading)
-    cosine /= raster.resolution
-    sine /= raster.resolution
+    cosine *= raster.cells_per_mm
+    sine *= raster.cells_per_mm
     for sensor in range(SENSORS):
         x, y = robot.sensor_x[sensor], robot.sensor_y[sensor]
         ahead_x, ahead_y = robot.sensor_cosine[sensor], robot.sensor_sine[sensor]

@@ -11,8 +11,10 @@ import math
 from typing import Literal, Self, cast
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from animat.numerics.compiled import kernel
 from animat.numerics.elementary import sine_cosine
 from animat.settings import Settings
 
@@ -23,6 +25,8 @@ MICHEL1996, LINEAR = 0, 1
 MODELS = {"michel1996": MICHEL1996, "linear": LINEAR}
 
 LINEAR_REACH = 50.0  # mm
+REACH = {"michel1996": 58.0, "linear": LINEAR_REACH}
+"""How far before it a sensor of each model sees anything, in mm."""
 
 ROBOT = np.dtype(
     (
@@ -41,6 +45,7 @@ ROBOT = np.dtype(
                 ("ring_y", np.float64, (RING_POINTS,)),
                 ("infrared", np.int64),
                 ("infrared_noise", np.bool_),
+                ("reach", np.float64),
                 ("sensor_radius", np.float64),
                 ("sensor_x", np.float64, (SENSORS,)),
                 ("sensor_y", np.float64, (SENSORS,)),
@@ -134,7 +139,7 @@ class Khepera(Settings):
                 f"{self.ring_radius / 2:g} mm, noise included"
             )
         for number, sensor in enumerate(self.sensors):
-            if math.hypot(sensor.x, sensor.y) > self.ring_radius:
+            if math.sqrt(sensor.x * sensor.x + sensor.y * sensor.y) > self.ring_radius:
                 problems.append(
                     f"sensor {number} at ({sensor.x:g}, {sensor.y:g}) mm lies outside the "
                     f"collision ring: it must be at most {self.ring_radius:g} mm from the centre"
@@ -159,24 +164,28 @@ class Khepera(Settings):
         ):
             robot[name] = getattr(self, name)
         robot["infrared"] = MODELS[self.infrared]
+        robot["reach"] = REACH[self.infrared]
         robot["sensor_radius"] = max(math.sqrt(s.x * s.x + s.y * s.y) for s in self.sensors)
-        for point in range(RING_POINTS):
-            sine, cosine = _direction(45.0 * point)
-            robot["ring_x"][point] = self.ring_radius * cosine
-            robot["ring_y"][point] = self.ring_radius * sine
-        for number, sensor in enumerate(self.sensors):
-            sine, cosine = _direction(sensor.direction)
-            robot["sensor_x"][number] = sensor.x
-            robot["sensor_y"][number] = sensor.y
-            robot["sensor_cosine"][number] = cosine
-            robot["sensor_sine"][number] = sine
+        robot["sensor_x"] = [sensor.x for sensor in self.sensors]
+        robot["sensor_y"] = [sensor.y for sensor in self.sensors]
+        looking = np.array([sensor.direction for sensor in self.sensors])
+        turn_to(looking, robot["sensor_sine"], robot["sensor_cosine"])
+        around = np.array([45.0 * point for point in range(RING_POINTS)])
+        turn_to(around, robot["ring_y"], robot["ring_x"])
+        robot["ring_x"] *= self.ring_radius
+        robot["ring_y"] *= self.ring_radius
         return cast(np.record, robot[()])
 
 
-def _direction(degrees: float) -> tuple[float, float]:
-    """Return (sine, cosine) of an angle in degrees, exact for multiples of 90."""
-    quarters = round(degrees / 90.0)
-    sine, cosine = sine_cosine(math.radians(degrees - 90.0 * quarters))
-    for _ in range(quarters % 4):
-        sine, cosine = cosine, -sine
-    return sine, cosine
+@kernel
+def turn_to(
+    degrees: NDArray[np.float64], sines: NDArray[np.float64], cosines: NDArray[np.float64]
+) -> None:
+    """Fill in sines and cosines [N] of angles [N] in degrees, exact for multiples of 90."""
+    for n in range(len(degrees)):
+        quarters = round(degrees[n] / 90.0)
+        sine, cosine = sine_cosine((degrees[n] - 90.0 * quarters) * (math.pi / 180.0))
+        for _ in range(quarters % 4):
+            sine, cosine = cosine, -sine
+        sines[n] = sine
+        cosines[n] = cosine

@@ -34,7 +34,7 @@ Combination = tuple[int, ...]
 
 def size(design: Design) -> int:
     """Return the number of combinations, those left out included."""
-    points = design.sample.points if design.sample else 1
+    points = design.sample.size if design.sample else 1
     return math.prod(map(len, design.grid.values())) * points * max(1, len(design.cases))
 
 

@@ -181,7 +181,7 @@ def _sections(
     tests = page.TableBlock(
         ("World", "Log-rank statistic", "p"),
         [
-            (world, f"{test.statistic:.2f}", f"{test.p:.2g}" if test.p > 0.0 else "< 1e-300")
+            (world, f"{test.statistic:.2f}", page.p_value(test.p))
             for world, test in result.tests.items()
         ],
         "BLIND against AF: do their lives end alike?",

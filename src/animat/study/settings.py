@@ -18,6 +18,7 @@ from animat.mind.mind import Mind
 from animat.mistakes import plain
 from animat.robot.khepera import Khepera
 from animat.settings import Settings, SettingsError, nearest
+from animat.world.arena import Arena
 from animat.world.layout import MINIMUM_GAP
 from animat.world.world import RESOLUTION, World
 
@@ -27,7 +28,7 @@ Steps = Annotated[int, Field(ge=1, le=LONGEST)]
 
 
 class WorldChoice(Settings):
-    """Which world: `abundant`, `scarce`, `random` (by counts, seed and gap), or a world's file.
+    """Which world: `abundant`, `scarce`, `random` (by counts, seed, gap and arena), or a file.
 
     The tables call it by `name`, or where that is left out by the name it has of itself.
     """
@@ -37,6 +38,7 @@ class WorldChoice(Settings):
     counts: dict[str, Annotated[int, Field(ge=0)]] | None = None
     seed: Annotated[int, Field(ge=0)] = 0
     gap: Annotated[float, Field(ge=0.0)] = MINIMUM_GAP
+    arena: Arena | None = None
     spares: Annotated[int, Field(ge=0)] = 0
     resolution: Annotated[float, Field(gt=0.0)] = RESOLUTION
 
@@ -44,6 +46,8 @@ class WorldChoice(Settings):
     def _consistent(self) -> WorldChoice:
         if (self.layout == "random") != (self.counts is not None):
             raise ValueError('layout = "random" and counts = {...} go together')
+        if self.arena is not None and self.layout != "random":
+            raise ValueError('arena = {...} needs layout = "random"; other worlds have their own')
         return self
 
     def world(self) -> World:
@@ -58,6 +62,7 @@ class WorldChoice(Settings):
                 self.counts,
                 seed=self.seed,
                 gap=self.gap,
+                arena=self.arena,
                 spares=self.spares,
                 resolution=self.resolution,
             )

@@ -2,6 +2,10 @@
 
 Distances are exact, from the centre of a cell to the outline of a polygon; only the place asked
 about is rounded to a cell.
+
+Most questions are answered by `room` alone: how much is free for certain round a point. So it is
+kept small and local, a byte a cell, in tiles of 8 x 8 cells: what a robot asks about in a row lies
+in a few lines of the processor's cache, however large the arena is.
 """
 
 from __future__ import annotations
@@ -22,9 +26,16 @@ BORDER_MM = 100.0
 FREE, WALL, FIRST_SITE = 0, 1, 2
 """What `Raster.solid` says of a cell: free, wall, or FIRST_SITE + s for the site s."""
 
+TILE = 8
+"""Cells along the side of a tile of `Raster.room`."""
+
+MOST_ROOM = 255
+"""mm; more room than this is not told apart."""
+
 MOST_CELLS = 100_000_000
 MOST_SITES = 32_000
 
+ROUNDING = 0.01  # mm
 _BLOCK = 16
 _SLACK = 1e-6  # mm; rounding must never let the bounding circles hide a site
 
@@ -32,12 +43,15 @@ _SLACK = 1e-6  # mm; rounding must never let the bounding circles hide a site
 class Raster(NamedTuple):
     """A world drawn on cells, as compiled code reads it.
 
-    The cell of a point (x, y) in mm is row int(y / resolution + border), column
-    int(x / resolution + border). A site is a place where an object stands or may stand.
+    The cell of a point (x, y) in mm is row int(y * cells_per_mm + border), column
+    int(x * cells_per_mm + border). A site is a place where an object stands or may stand.
     """
 
     resolution: float  # side of a cell, mm
+    cells_per_mm: float  # 1 / resolution
     border: int  # cells of wall round the playground
+    tiles: int  # tiles of `room` from left to right
+    room: NDArray[np.uint8]  # [tiles x tiles x TILE x TILE] mm free round every point of a cell
     solid: NDArray[np.int16]  # [R, C] FREE, WALL, or FIRST_SITE + site; by the cell's centre
     clearance: NDArray[np.float32]  # [R, C] mm to the nearest wall or outline; 0 where solid
     near_site: NDArray[np.int16]  # [R, C, K] sites within the horizon, nearest first; -1 padded
@@ -85,9 +99,13 @@ def draw(
     near_site = np.full((rows, columns, most), -1, dtype=np.int16)
     near_distance = np.full((rows, columns, most), np.inf, dtype=np.float32)
     _list_near(grid, outlines, near_site, near_distance)
+    tiles, room = tiled_room(clearance, resolution)
     return Raster(
         resolution=float(resolution),
+        cells_per_mm=1.0 / resolution,
         border=border,
+        tiles=tiles,
+        room=room,
         solid=solid,
         clearance=clearance,
         near_site=near_site,
@@ -98,6 +116,21 @@ def draw(
         features=features,
         affords=affords,
     )
+
+
+def tiled_room(clearance: NDArray[np.float32], resolution: float) -> tuple[int, NDArray[np.uint8]]:
+    """Return the tiles from left to right, and `Raster.room`, of a clearance [R, C].
+
+    A point lies within half a diagonal of the centre of its cell, and so does any other point of
+    the centre of its own: a clearance, from centre to outline, less a diagonal is free between
+    cells. The rest of what is taken off is for its being a float32.
+    """
+    certain = clearance - (math.sqrt(2.0) * resolution + ROUNDING)
+    rows, columns = (-(-cells // TILE) for cells in clearance.shape)
+    whole = np.zeros((rows * TILE, columns * TILE), np.uint8)
+    whole[: clearance.shape[0], : clearance.shape[1]] = np.clip(certain, 0.0, MOST_ROOM)
+    tiles = whole.reshape(rows, TILE, columns, TILE).swapaxes(1, 2)
+    return columns, np.ascontiguousarray(tiles).reshape(-1)
 
 
 @kernel

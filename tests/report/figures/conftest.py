@@ -173,3 +173,36 @@ def world():
 @pytest.fixture
 def robot():
     return make_robot()
+
+
+def is_legible(fig):
+    """Every word of the figure lies inside it and is large enough."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.text import Text
+
+    canvas = FigureCanvasAgg(fig)
+    canvas.draw()
+    whole = fig.bbox
+    ticks = {
+        id(tick.label1): low <= tick.get_loc() <= high
+        for ax in fig.axes
+        for axis, (low, high) in (
+            (ax.xaxis, sorted(ax.get_xlim())),
+            (ax.yaxis, sorted(ax.get_ylim())),
+        )
+        for tick in axis.get_major_ticks()
+    }
+    for text in fig.findobj(Text):
+        if not (text.get_visible() and text.get_text().strip() and ticks.get(id(text), True)):
+            continue
+        assert text.get_fontsize() >= 8
+        box = text.get_window_extent(canvas.get_renderer())
+        assert box.x0 >= whole.x0 - 1, text
+        assert box.x1 <= whole.x1 + 1, text
+        assert box.y0 >= whole.y0 - 1, text
+        assert box.y1 <= whole.y1 + 1, text
+
+
+@pytest.fixture
+def legible():
+    return is_legible

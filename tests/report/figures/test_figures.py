@@ -18,8 +18,10 @@ from animat.report.figures.learning import learning_figure
 from animat.report.figures.learning_curve import learning_curve_figure
 from animat.report.figures.life import life_figure
 from animat.report.figures.lifespans import Bar, Panel, lifespans_figure
+from animat.report.figures.margins import margins_figure
 from animat.report.figures.ratio import Mark, ratio_figure
-from animat.report.figures.survival import survival_figure
+from animat.report.figures.survival import level_curves_figure, survival_figure
+from animat.report.figures.trend import trend_figure
 from animat.report.figures.worlds import worlds_figure
 from animat.report.survival import ALIVE, DeathCount
 
@@ -47,6 +49,28 @@ def drawings(trace, learning, ratios, world, robot, lives_table):
         "learning_curve": lambda: learning_curve_figure(learning(3, 30)[0]),
         "survival": lambda: survival_figure(curves),
         "survival_log": lambda: survival_figure(curves, log=True),
+        "survival_levels": lambda: level_curves_figure(
+            {
+                f"a level with a rather long name, number {k}": curve
+                for k, curve in enumerate(curves.values())
+            },
+            ordered=True,
+        ),
+        "margins": lambda: margins_figure(
+            {
+                "mind.variables.nutrition.rate": {"0.0001": bars[0].mean, "0.001": bars[1].mean},
+                "agent": {
+                    "a level with a name that is much longer than a page is wide": bars[2].mean
+                },
+            },
+            250.0,
+        ),
+        "trend": lambda: trend_figure(
+            "mind.success_effect",
+            rng.random(50),
+            300 + 900 * rng.random(50),
+            [(0.2, bars[0].mean), (0.7, bars[1].mean)],
+        ),
         "causes": lambda: causes_figure({", ".join(cell): deaths for cell in CELLS}),
         "life": lambda: life_figure(
             trace(300), set_points=SET_POINTS, drives=DRIVES, world=worlds[0], title="A life"
@@ -57,7 +81,8 @@ def drawings(trace, learning, ratios, world, robot, lives_table):
 
 
 NAMES = (
-    "worlds", "learning", "lifespans", "learning_curve", "survival", "survival_log", "causes",
+    "worlds", "learning", "lifespans", "learning_curve", "survival", "survival_log",
+    "survival_levels", "margins", "trend", "causes",
     "life", "life_alone", "ratio",
 )  # fmt: skip
 
@@ -118,7 +143,10 @@ def hidden_ticks(fig):
 
 
 def test_no_figure_needs_pyplot():
-    modules = "causes learning learning_curve life lifespans ratio style survival worlds"
+    modules = (
+        "causes learning learning_curve life lifespans marginal margins ratio sobol specification"
+        " style survival trend verdicts worlds"
+    )
     code = "; ".join(f"import animat.report.figures.{name}" for name in modules.split())
     code += "; import sys; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

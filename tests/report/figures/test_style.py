@@ -38,3 +38,23 @@ def test_agents_differ_in_black_and_white_too():
 def test_a_folder_that_is_not_there_is_refused(tmp_path):
     with pytest.raises(SettingsError, match="cannot be written"):
         style.save(style.new_figure(1, 1), tmp_path / "none" / "figure")
+
+
+def test_shades_darken_from_last_to_first_in_black_and_white_too():
+    shades = [luminance(colour) for colour in style.shades([str(k) for k in range(8)]).values()]
+    assert shades == sorted(shades)
+    assert shades[-1] < 0.5  # still seen on white
+    assert style.shades(["alone"])
+
+
+def test_a_logarithmic_axis_is_for_positive_numbers_far_apart():
+    assert style.spread_out([1.0, 21.0])
+    assert not style.spread_out([1.0, 19.0])
+    assert not style.spread_out([0.0, 21.0])
+    assert not style.spread_out([])
+
+
+def test_long_labels_are_cut_and_take_fewer_columns():
+    assert style.shortened("x" * 44) == "x" * 44
+    assert style.shortened("x" * 45) == "x" * 43 + "…"
+    assert [style.legend_columns(["x" * n]) for n in (5, 30, 44)] == [3, 2, 1]

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.report import survival
-from animat.report.figures.survival import POINTS, survival_figure, thinned
+from animat.report.figures.survival import POINTS, level_curves_figure, survival_figure, thinned
 
 
 @given(st.integers(1, 20_000))
@@ -44,3 +44,10 @@ def test_only_curves_of_lives_that_reached_the_cap_end_in_a_dot(lives_table):
     points, labels = dots(None)
     assert points == []
     assert "alive at the cap" not in labels
+
+
+def test_every_level_has_a_look_of_its_own(lives_table):
+    (curve, *_) = curves(lives_table, None).values()
+    for ordered in (True, False):
+        (ax,) = level_curves_figure({str(k): curve for k in range(8)}, ordered=ordered).axes
+        assert len({(line.get_color(), line.get_linestyle()) for line in ax.lines}) == 8

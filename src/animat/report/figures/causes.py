@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import PercentFormatter
 
-from animat.report.figures.style import BLACK, HATCHES, PALE, colours, new_figure, styled
+from animat.report.figures.style import BLACK, HATCHES, PALE, colours, new_figure, shortened, styled
 from animat.report.survival import ALIVE, DeathCount
 
 _VARIABLES = {"nutrition": "#E69F00", "stamina": "#56B4E9", "restlessness": "#009E73"}
@@ -45,7 +45,7 @@ def causes_figure(cells: Mapping[str, Sequence[DeathCount]]) -> Figure:
                     fontsize=8, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.2},
                 )  # fmt: skip
             left += width
-    ax.set_yticks(range(len(cells)), list(cells))
+    ax.set_yticks(range(len(cells)), [shortened(name) for name in cells])
     ax.invert_yaxis()
     ax.set_xlim(0, 1)
     ax.xaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))

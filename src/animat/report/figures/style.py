@@ -5,13 +5,14 @@ where two things meet, a pattern or a line style tells them apart as well, for p
 """
 
 import io
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import wraps
 from pathlib import Path
 from typing import Any, ParamSpec
 
 from cycler import cycler
-from matplotlib import rc_context, rcParamsDefault
+from matplotlib import colormaps, rc_context, rcParamsDefault
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
@@ -106,6 +107,28 @@ def type_colours(types: Iterable[str]) -> dict[str, str]:
 def agent_colours(agents: Iterable[str]) -> dict[str, str]:
     """A colour for each agent; BLIND and AF always have the same."""
     return colours(agents, _AGENTS)
+
+
+def shades(names: Sequence[str]) -> dict[str, str]:
+    """A colour for each of `names` in their order: darker is earlier, in print and in grey too."""
+    scale = colormaps["cividis"]
+    last = max(len(names) - 1, 1)
+    return {name: to_hex(scale(0.75 * place / last)) for place, name in enumerate(names)}
+
+
+def shortened(label: str, most: int = 44) -> str:
+    """A label that leaves room for the drawing."""
+    return label if len(label) <= most else label[: most - 1] + "…"
+
+
+def legend_columns(labels: Sequence[str]) -> int:
+    """How many columns a legend below a figure of 6.4 inches has room for."""
+    return max(1, min(3, 90 // (max(map(len, labels), default=1) + 8)))
+
+
+def spread_out(values: Sequence[float]) -> bool:
+    """Do positive numbers differ so much that only a logarithmic axis shows them all?"""
+    return len(values) > 0 and min(values) > 0 and max(values) > 20 * min(values)
 
 
 def type_words(name: str) -> str:

@@ -1,0 +1,121 @@
+"""`animat multiverse`."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from animat.cli.app import DONE, FAILED, INTERRUPTED, app
+from animat.cli.check import Set
+from animat.cli.options import Debug, Out, Quick, Threads, compiling_told
+
+if TYPE_CHECKING:
+    from animat.study.multiverse.run import Multiverse
+    from animat.study.study import Study
+
+QUICK = (
+    "lives=10",
+    "steps=5_000",
+    "teacher.robots=3",
+    "teacher.steps=30_000",
+    "design.sample.points=128",
+)
+
+CONFIRMED_QUICKLY = 60
+
+
+@app.command()
+def multiverse(
+    study: Annotated[
+        str, typer.Argument(help="The study: a .toml file, or the one that comes with animat.")
+    ] = "multiverse",
+    universes: Annotated[
+        int | None, typer.Option(help="About how many universes; 1,922 unless given.", min=1)
+    ] = None,
+    full: Annotated[
+        bool, typer.Option("--full", help="Every combination of readings: for a cluster.")
+    ] = False,
+    out: Out = None,
+    changes: Set = None,
+    threads: Threads = None,
+    quick: Quick = False,
+    debug: Debug = False,
+) -> int:
+    """Live every reading of the paper, and say which of them its claims need.
+
+    A directory that is finished is analysed again; one that is not is gone on with.
+    """
+    from animat.progress import telling
+    from animat.study.lock import HeldError
+    from animat.study.multiverse.designs import of_size
+    from animat.study.multiverse.page import FIGURES, publish
+    from animat.study.multiverse.run import InterruptedStudyError, Size, run_multiverse
+    from animat.study.multiverse.universes import readings_of
+    from animat.study.provenance import provenance
+    from animat.study.run import threads as workers_of
+    from animat.study.shipped import study_file
+    from animat.study.store import StoreError
+    from animat.study.study import read_study
+
+    asked = read_study(study_file(study), [*(QUICK if quick else ()), *(changes or ())])
+    readings_of(asked)
+    if universes is not None:
+        asked = of_size(asked, universes)
+    directory = out or Path("results") / asked.name
+    size = Size(confirming=CONFIRMED_QUICKLY, longer=0) if quick else Size()
+    if not full:
+        _say_what(asked, directory)
+    started = time.monotonic()
+    try:
+        with compiling_told(), telling() as tell, workers_of(threads) as workers:
+            found = run_multiverse(asked, directory, size, workers, tell, full=full)
+            command = str(provenance()["command"])
+            publish(
+                found, directory, command, lambda: tell("Figures and page", 1, len(FIGURES) + 1)
+            )
+    except InterruptedStudyError as error:
+        print(f"animat: interrupted; the same command goes on with {error}", file=sys.stderr)
+        return INTERRUPTED
+    except (HeldError, StoreError) as error:
+        print(f"animat: {error}", file=sys.stderr)
+        return FAILED
+    _print(found)
+    print(f"{time.monotonic() - started:.0f} s; open {directory / 'report.html'}")
+    return DONE
+
+
+def _say_what(asked: Study, directory: Path) -> None:
+    from animat.report.multiverse.universes import CELLS
+    from animat.study.design import excluded
+    from animat.study.multiverse.designs import count
+    from animat.study.multiverse.universes import readings_of
+
+    print(
+        f"{asked.name}: {count(asked):,} universes of {len(readings_of(asked))} readings,"
+        f" {asked.lives:,} lives a cell; results in {directory}"
+    )
+    for rule in excluded(asked):
+        print(f"left out, {rule.count // len(CELLS):,} universes: {rule.why}")
+    sys.stdout.flush()
+
+
+def _print(found: Multiverse) -> None:
+    """Print the shares of the claims, and the smallest sets."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from animat.cli.reproduce import PRINTED_WIDTH
+    from animat.study.multiverse.tables import shares_table, smallest_table
+
+    console = Console(width=None if sys.stdout.isatty() else PRINTED_WIDTH)
+    if found.missing:
+        print(f"{found.missing:,} universes are left out: a life or a robot of them failed")
+    for block in (shares_table(found), smallest_table(found)):
+        table = Table(*block.columns)
+        for row in block.rows:
+            table.add_row(*(cell if isinstance(cell, str) else cell.verdict for cell in row))
+        console.print(table)

@@ -1,0 +1,36 @@
+"""`animat report`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from animat.cli.app import app
+from animat.cli.options import Debug
+
+
+@app.command()
+def report(
+    directory: Annotated[Path, typer.Argument(help="A results directory, of animat run.")],
+    by: Annotated[
+        list[str] | None,
+        typer.Option(help="A factor to tell of; may be given again. All factors unless given."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="The page to write; DIRECTORY/report.html unless given.")
+    ] = None,
+    debug: Debug = False,
+) -> None:
+    """Write one page on a study: what was asked, how it was run, what came out."""
+    from animat.progress import telling
+    from animat.study.report import write_report
+    from animat.study.results import open as open_results
+
+    results = open_results(directory)
+    with telling() as tell:
+        path, short = write_report(results, out, by, tell)
+    for line in short:
+        print(line)
+    print(f"open {path}")

@@ -1,0 +1,60 @@
+"""`animat sensitivity`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from animat.cli.app import DONE, FAILED, INTERRUPTED, app
+from animat.cli.check import Set
+from animat.cli.options import Debug, Out, Quick, Threads, compiling_told
+
+QUICK = ("lives=4", "steps=5_000", "teacher.steps=20_000", "design.sample.points=4")
+
+
+@app.command()
+def sensitivity(
+    study: Annotated[
+        str, typer.Argument(help="The study: a .toml file, or the one that comes with animat.")
+    ] = "sensitivity",
+    out: Out = None,
+    changes: Set = None,
+    threads: Threads = None,
+    quick: Quick = False,
+    debug: Debug = False,
+) -> int:
+    """Say which continuous parameters lifespans depend on: Sobol's indices."""
+    from animat.progress import telling
+    from animat.study.lock import HeldError
+    from animat.study.plan import Plan
+    from animat.study.provenance import provenance
+    from animat.study.results import open as open_results
+    from animat.study.run import run
+    from animat.study.run import threads as workers_of
+    from animat.study.sensitivity import check, publish, short
+    from animat.study.sensitivity import sensitivity as indices_of
+    from animat.study.shipped import study_file
+    from animat.study.store import StoreError
+    from animat.study.study import read_study
+
+    asked = read_study(study_file(study), [*(QUICK if quick else ()), *(changes or ())])
+    check(asked)
+    directory = out or Path("results") / asked.name
+    try:
+        with compiling_told(), telling() as tell, workers_of(threads) as workers:
+            outcome = run(Plan(asked), directory, workers, tell)
+    except (HeldError, StoreError) as error:
+        print(f"animat: {error}", file=sys.stderr)
+        return FAILED
+    if not outcome.complete:
+        print(f"animat: the same command goes on with {directory}", file=sys.stderr)
+        return INTERRUPTED
+    found = indices_of(open_results(directory))
+    publish(found, directory, str(provenance()["command"]))
+    for line in short(found):
+        print(line)
+    print(f"open {directory / 'sensitivity.html'}")
+    return DONE

@@ -1,0 +1,191 @@
+"""Tables and pictures of levels and their comparisons, as the page shows them."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TypeVar
+
+import numpy as np
+
+from animat.report.estimates import Estimate, share
+from animat.report.figures.causes import causes_figure
+from animat.report.figures.margins import margins_figure
+from animat.report.figures.style import spread_out
+from animat.report.figures.survival import level_curves_figure
+from animat.report.figures.trend import trend_figure
+from animat.report.levels import Level
+from animat.report.margins import Margin
+from animat.report.page import Picture, TableBlock, interval, p_value, picture
+from animat.report.sample import Sample, case_means
+
+T = TypeVar("T")
+
+ROWS_AT_MOST = 40
+"""Of more levels or comparisons than this, the first and the last are shown."""
+
+BARS_AT_MOST = 24
+CURVES_AT_MOST = 8
+COLUMNS_AT_MOST = 6
+
+
+def lifespans_table(names: Sequence[str], levels: Sequence[Level]) -> TableBlock:
+    """Lifespans, acts and stability, a row for each level; `names` head the parts of its name."""
+    return TableBlock(
+        (*names, "Lives", "Alive at the cap", "Mean lifespan (steps)", "Median lifespan (steps)",
+         "Acts that succeed", "Mean drive"),
+        [
+            (
+                *one.summary.cell,
+                f"{one.summary.lives:,}",
+                f"{one.summary.alive:,}",
+                interval(one.summary.mean, ",.0f"),
+                interval(one.summary.median, ",.0f"),
+                interval(one.summary.success_rate, ".1%"),
+                interval(one.summary.stability, ".3f"),
+            )
+            for one in first_and_last(levels, ROWS_AT_MOST)
+        ],
+        _left_out(levels),
+    )  # fmt: skip
+
+
+def measures_table(levels: Sequence[Level]) -> TableBlock | None:
+    """The likelihoods, a row for each and a column for each level; None if there are none."""
+    shown = first_and_last(levels, COLUMNS_AT_MOST)
+    rows = [
+        (
+            name.removeprefix("likelihood_").replace("_", " "),
+            *(interval(one.measures[name], ".2f") for one in shown),
+        )
+        for name in levels[0].measures
+    ]
+    if not rows:
+        return None
+    return TableBlock(
+        ("Network and object", *(one.label for one in shown)),
+        rows,
+        _left_out(levels, COLUMNS_AT_MOST),
+        title="Mean likelihood at the end of life",
+    )
+
+
+def endings_table(names: Sequence[str], levels: Sequence[Level]) -> TableBlock:
+    """How the lives ended, the frequent ways first.
+
+    Few levels have a column each, many a row each, and then rare ways are put together.
+    """
+    total: dict[str, int] = {}
+    for one in levels:
+        for death in one.summary.deaths:
+            total[death.label] = total.get(death.label, 0) + death.count
+    ways = sorted(total, key=lambda way: -total[way])
+    title = "How the lives ended"
+    if len(levels) <= COLUMNS_AT_MOST:
+        rows = [(way, *(_share(one, [way]) for one in levels)) for way in ways]
+        return TableBlock(("", *(one.label for one in levels)), rows, title=title)
+    columns = {way: [way] for way in ways[:COLUMNS_AT_MOST]}
+    if len(ways) > COLUMNS_AT_MOST:
+        columns["otherwise"] = ways[COLUMNS_AT_MOST:]
+    rows = [
+        (*one.summary.cell, *(_share(one, some) for some in columns.values()))
+        for one in first_and_last(levels, ROWS_AT_MOST)
+    ]
+    return TableBlock((*names, *columns), rows, _left_out(levels), title=title)
+
+
+def _share(one: Level, ways: Sequence[str]) -> str:
+    """The share of a level's lives that ended in one of some ways."""
+    count = sum(death.count for death in one.summary.deaths if death.label in ways)
+    return interval(share(count, one.summary.lives), ".1%") if count else "0"
+
+
+def comparisons_table(margin: Margin, corrected: Sequence[float], tests: int) -> TableBlock:
+    """The levels of a factor against the first; `corrected` are the p values for all `tests`."""
+    rows = [
+        (
+            f"{one.level} against {one.reference}",
+            one.where or "over all",
+            f"{one.lives:,}",
+            interval(one.ratio, ".2f"),
+            interval(one.delta, ".2f"),
+            p_value(one.test.p),
+            p_value(p),
+        )
+        for one, p in zip(margin.comparisons, corrected, strict=True)
+    ]
+    return TableBlock(
+        ("Levels", "Where", "Lives", "Ratio of mean lifespans", "Cliff's delta", "p", "p, Holm"),
+        first_and_last(rows, ROWS_AT_MOST),
+        f"p: {margin.comparisons[0].test.name}. p, Holm: corrected for the {tests} comparisons of"
+        f" levels on this page. {_left_out(rows)}".strip(),
+        title=f"Against {margin.levels[0].label}",
+    )
+
+
+def curves_picture(levels: Sequence[Level], *, ordered: bool = False) -> Picture:
+    """Survival curves; `ordered` levels are numbers."""
+    ends = [one.curve.times[-1] for one in levels]
+    medians = [one.curve.median().value for one in levels]
+    fig = level_curves_figure(
+        {one.label: one.curve for one in levels},
+        ordered=ordered,
+        log=spread_out([*ends, *filter(math.isfinite, medians)]),
+    )
+    return picture(
+        fig,
+        "Survival curves (Kaplan-Meier) with 95 % bands. Lives that reach the cap are censored"
+        " there.",
+        "Share of lives still going on over steps",
+    )
+
+
+def endings_picture(levels: Sequence[Level]) -> Picture:
+    """How the lives of each level ended."""
+    fig = causes_figure({one.label: one.summary.deaths for one in levels})
+    return picture(fig, "How the lives ended.", "Stacked bars of causes of death")
+
+
+def margins_picture(margins: Sequence[Margin], overall: Estimate) -> Picture:
+    """The mean lifespan at each level of each factor."""
+    factors: Mapping[str, Mapping[str, Estimate]] = {
+        margin.factor.name: {
+            one.label: one.summary.mean for one in first_and_last(margin.levels, BARS_AT_MOST)
+        }
+        for margin in margins
+    }
+    return picture(
+        margins_figure(factors, overall.value),
+        "Mean lifespan at each level of each factor, over all others, with its 95 % interval.",
+        "Dots with intervals for each level of each factor",
+    )
+
+
+def trend_picture(margin: Margin, lives: Sample) -> Picture:
+    """The mean lifespans of cases over a factor that has a range."""
+    name, values = margin.factor.name, margin.factor.values
+    assert values is not None
+    first, means = case_means(lives, margin.factor)
+    there = ~np.isnan(values[first])
+    quarters = [
+        (float(np.median(values[margin.factor.codes == code])), one.summary.mean)
+        for code, one in enumerate(margin.levels)
+        if not np.isnan(values[margin.factor.codes == code]).any()
+    ]
+    fig = trend_figure(name, values[first][there], means[there], quarters)
+    return picture(
+        fig,
+        f"Mean lifespan of every case over {name}, and the mean of each quarter of its range at"
+        " the middle of the quarter's lives.",
+        f"Dots of mean lifespan against {name}",
+    )
+
+
+def first_and_last(entries: Sequence[T], most: int) -> list[T]:
+    """Of more than `most` entries, as many from both ends."""
+    half = most // 2
+    return list(entries) if len(entries) <= most else [*entries[:half], *entries[-half:]]
+
+
+def _left_out(entries: Sequence, most: int = ROWS_AT_MOST) -> str:
+    if len(entries) <= most:
+        return ""
+    return f"Shown are the first and the last {most // 2} of {len(entries)}."

@@ -1,0 +1,102 @@
+"""What each reading does: to every claim in points, to the gains as a factor."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pyarrow as pa
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+from animat.report.figures.style import BLACK, BLUE, GREY, VERMILLION, new_figure, styled
+
+_POINTS = LinearSegmentedColormap.from_list("points", [VERMILLION, "white", BLUE])
+_DARK = 0.6
+_TICKS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
+_FARTHEST = 30.0  # factors beyond it, of a few universes, are not worth the room
+_FINE_TICKS = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.4)
+
+
+@styled
+def points_figure(effects: pa.Table, claims: Sequence[str]) -> Figure:
+    """Points by which a value of a reading changes the share of universes in which a claim holds.
+
+    `effects` is of `multiverse.marginal.marginal_effects`. Grey numbers have an interval with 0.
+    """
+    found = _by_contrast(effects)
+    fig = new_figure(7.2, 0.21 * len(found) + 0.9)
+    ax = fig.subplots()
+    points = np.array([[rows[claim]["effect"] for claim in claims] for rows in found.values()])
+    ax.imshow(points, cmap=_POINTS, vmin=-1.0, vmax=1.0, aspect="auto")
+    for place, rows in enumerate(found.values()):
+        for number, claim in enumerate(claims):
+            row = rows[claim]
+            if np.isnan(row["effect"]):
+                continue
+            sure = row["low"] > 0.0 or row["high"] < 0.0
+            ink = "white" if abs(row["effect"]) > _DARK else BLACK
+            ax.text(
+                number, place, f"{round(100 * row['effect']):+d}", ha="center", va="center",
+                fontsize=8, color=ink if sure else GREY,
+                fontweight="bold" if sure else "normal",
+            )  # fmt: skip
+    ax.set_xticks(range(len(claims)), claims)
+    ax.xaxis.tick_top()
+    ax.set_yticks(range(len(found)), list(found), fontsize=8)
+    ax.tick_params(length=0)
+    ax.spines[:].set_visible(False)
+    return fig
+
+
+@styled
+def factors_figure(effects: pa.Table, outcomes: Mapping[str, str]) -> Figure:
+    """Factors by which a value of a reading changes ratios of lifespans, with their intervals.
+
+    `outcomes` are ratios of the table of universes, each in words.
+    """
+    found = _by_contrast(effects)
+    fig = new_figure(7.2, 0.2 * len(found) + 1.0)
+    axes = fig.subplots(1, len(outcomes), sharey=True, squeeze=False)[0]
+    at = np.arange(len(found))
+    for ax, (name, words) in zip(axes, outcomes.items(), strict=True):
+        value, low, high = (
+            np.array([rows[name][part] for rows in found.values()])
+            for part in ("effect", "low", "high")
+        )
+        sure = (low > 1.0) | (high < 1.0)
+        ax.axvline(1.0, color=BLACK, lw=0.8)
+        for chosen, colour in ((sure, BLUE), (~sure, GREY)):
+            ax.hlines(at[chosen], low[chosen], high[chosen], color=colour, lw=1.6)
+            ax.plot(value[chosen], at[chosen], "o", color=colour, ms=4)
+        ax.set_xscale("log")
+        ends = np.nanmin(np.append(low, 0.95)) / 1.1, np.nanmax(np.append(high, 1.05)) * 1.1
+        ax.set_xlim(max(ends[0], 1.0 / _FARTHEST), min(ends[1], _FARTHEST))
+        ax.xaxis.set_major_locator(FixedLocator(_ticks(*ax.get_xlim())))
+        ax.xaxis.set_major_formatter(FuncFormatter(lambda factor, _: f"{factor:g}"))
+        ax.xaxis.set_minor_locator(NullLocator())
+        ax.set_xlabel(words)
+        ax.grid(axis="x")
+    axes[0].set_yticks(at, list(found), fontsize=8)
+    axes[0].set_ylim(len(found) - 0.5, -0.5)
+    for ax in axes:
+        ax.tick_params(axis="y", length=0)
+    return fig
+
+
+def _ticks(low: float, high: float) -> list[float]:
+    """Round factors between the ends of an axis, some more where few of them lie there."""
+    ticks = [tick for tick in _TICKS if low <= tick <= high]
+    if len(ticks) < 3:
+        ticks = [
+            tick for tick in (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.4) if low <= tick <= high
+        ]
+    return ticks
+
+
+def _by_contrast(effects: pa.Table) -> dict[str, dict[str, dict]]:
+    """The rows by what is compared, in words, and by outcome."""
+    found: dict[str, dict[str, dict]] = {}
+    for row in effects.to_pylist():
+        words = f"{row['reading']}: {row['value']}, not {row['against']}"
+        found.setdefault(words, {})[row["outcome"]] = row
+    return found

@@ -1,0 +1,148 @@
+"""The smallest sets of readings with which a claim holds nearly everywhere.
+
+A set says of some readings which values they may have; the others are free. It is found in one
+sample of universes, where it may owe its share to luck, and confirmed in another.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+
+from animat.report.claims import Verdict, above
+from animat.report.estimates import Estimate, share
+from animat.report.lives import column
+from animat.report.multiverse.readings import MOST_UNIVERSES, Readings, codes, some_of
+from animat.report.multiverse.universes import holds
+
+NEARLY_ALL = 0.95
+"""The share of universes in which a claim is to hold."""
+
+MOST_READINGS = 5
+"""How many readings a set fixes at most; with more, too few universes are left to judge by."""
+
+SUPPORT = 40
+"""Universes that must be left; if the claim holds in all, Wilson's interval begins at 0.91."""
+
+BEAM = 5_000
+"""Sets of each size that are extended; every pair and triple of usual designs is tried."""
+
+
+class Condition(NamedTuple):
+    """A reading and the values it may have."""
+
+    reading: str
+    values: tuple[str, ...]
+
+
+class SmallestSet(NamedTuple):
+    """A set of conditions, and in what share of so many universes that meet it the claim holds."""
+
+    claim: str
+    conditions: tuple[Condition, ...]
+    universes: int
+    share: Estimate
+
+
+class Confirmation(NamedTuple):
+    """What fresh universes say of a set; the verdict is on a share above `NEARLY_ALL`."""
+
+    found: SmallestSet
+    universes: int
+    share: Estimate
+    verdict: Verdict
+
+
+def smallest_set(universes: pa.Table, readings: Readings, claim: str) -> SmallestSet | None:
+    """The set of fewest conditions with which `claim` holds in `NEARLY_ALL` universes.
+
+    Of several of one size the one whose share is surest: Wilson's interval begins highest. None
+    if no set of `MOST_READINGS` or fewer does it in at least `SUPPORT` universes.
+    """
+    universes = some_of(universes, MOST_UNIVERSES)
+    good_in = holds(universes, claim)
+    if len(good_in) >= SUPPORT and good_in.mean() >= NEARLY_ALL:
+        return SmallestSet(claim, (), len(good_in), share(int(good_in.sum()), len(good_in)))
+    conditions, met, of = _literals(codes(universes, readings), readings)
+    sets = np.arange(len(conditions))[:, None]
+    for size in range(1, min(MOST_READINGS, len(readings)) + 1):
+        masks = np.all(met[sets], axis=1)
+        total = masks.sum(axis=1)
+        enough = total >= SUPPORT
+        sets, masks, total = sets[enough], masks[enough], total[enough]
+        if not len(sets):
+            return None
+        good = (masks & good_in).sum(axis=1)
+        shares = good / total
+        if np.any(shares >= NEARLY_ALL):
+            return _surest(claim, conditions, sets, good, total)
+        best = np.lexsort((-total, -shares))[:BEAM]
+        if size < min(MOST_READINGS, len(readings)):
+            sets = _extended(sets[best], masks[best], met, of, good_in)
+    return None
+
+
+def confirm(found: SmallestSet, universes: pa.Table) -> Confirmation:
+    """Judge a set by universes that meet it and that it was not found in."""
+    meets = np.ones(universes.num_rows, dtype=bool)
+    for reading, values in found.conditions:
+        meets &= np.isin(column(universes, reading).astype(str), values)
+    good_in = holds(universes, found.claim)[meets]
+    estimate = share(int(good_in.sum()), len(good_in))
+    return Confirmation(found, len(good_in), estimate, above(estimate, NEARLY_ALL))
+
+
+def _literals(
+    code: NDArray[np.int64], readings: Readings
+) -> tuple[list[Condition], NDArray[np.bool_], NDArray[np.int64]]:
+    """Every condition on one reading, the universes that meet it [L, U], and its reading [L]."""
+    conditions, met, of = [], [], []
+    for place, (name, values) in enumerate(readings.items()):
+        for size in range(len(values) - 1, 0, -1):
+            for chosen in combinations(range(len(values)), size):
+                conditions.append(Condition(name, tuple(values[c] for c in chosen)))
+                met.append(np.isin(code[:, place], chosen))
+                of.append(place)
+    return conditions, np.array(met), np.array(of)
+
+
+def _extended(
+    sets: NDArray[np.int64],
+    masks: NDArray[np.bool_],
+    met: NDArray[np.bool_],
+    of: NDArray[np.int64],
+    good_in: NDArray[np.bool_],
+) -> NDArray[np.int64]:
+    """The best sets [K, size + 1] that have one condition more, on a reading not yet used."""
+    # float32 counts universes exactly up to 16 million, and multiplies fast.
+    every = met.T.astype(np.float32)
+    total = masks.astype(np.float32) @ every
+    good = (masks & good_in).astype(np.float32) @ every
+    used = (of[sets][:, :, None] == of).any(axis=1)
+    total[used] = 0.0
+    row, literal = np.nonzero(total >= SUPPORT)
+    order = np.lexsort((-total[row, literal], -(good / np.maximum(total, 1.0))[row, literal]))
+    # A set comes once for each of its conditions, so twice the beam and more is looked at.
+    order = order[: BEAM * (sets.shape[1] + 1)]
+    longer = np.sort(np.column_stack([sets[row[order]], literal[order]]), axis=1)
+    _, first = np.unique(longer, axis=0, return_index=True)
+    return longer[np.sort(first)[:BEAM]]
+
+
+def _surest(
+    claim: str,
+    conditions: list[Condition],
+    sets: NDArray[np.int64],
+    good: NDArray[np.int64],
+    total: NDArray[np.int64],
+) -> SmallestSet:
+    enough = np.flatnonzero(good / total >= NEARLY_ALL)
+    estimates = [share(int(good[k]), int(total[k])) for k in enough]
+    best = max(range(len(enough)), key=lambda k: (estimates[k].low, -k))
+    k = int(enough[best])
+    chosen = tuple(conditions[c] for c in sets[k])
+    return SmallestSet(claim, chosen, int(total[k]), estimates[best])

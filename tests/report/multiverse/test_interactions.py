@@ -1,0 +1,49 @@
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from animat.report.multiverse.interactions import strongest_interactions
+
+
+def test_the_planted_pair_is_the_only_interaction_found(planted, readings):
+    rows = strongest_interactions(planted, readings).to_pylist()
+    assert rows
+    for row in rows:
+        assert (row["reading"], row["other"]) == ("overflow", "effect")
+    by_outcome = {row["outcome"]: row for row in rows}
+    gain = by_outcome["abundant_gain"]
+    assert gain["effect_here"] == pytest.approx(1.0, rel=0.05)
+    assert gain["effect_against"] == pytest.approx(0.125, rel=0.05)
+    assert gain["interaction"] == pytest.approx(8.0, rel=0.05)
+    assert gain["low"] < 8.0 < gain["high"]
+    assert by_outcome["C1"]["interaction"] == pytest.approx(1.0, abs=0.05)
+
+
+def test_effects_that_only_add_up_are_no_interaction(make_universes, combinations, readings):
+    """Each doubles the gain, so on the scale of factors they do not matter to each other."""
+
+    def gain(one):
+        return 2.0 ** ((one["overflow"] == "clamp") + (one["effect"] == "0.2"))
+
+    universes = make_universes(combinations(copies=3), gain)
+    rows = strongest_interactions(universes, readings).to_pylist()
+    assert "abundant_gain" not in {row["outcome"] for row in rows}
+
+
+def test_chance_alone_is_not_called_an_interaction(planted, readings):
+    rng = np.random.default_rng(1)
+    found = 0
+    for _ in range(10):
+        verdicts = pa.array(rng.choice(["holds", "fails"], planted.num_rows).tolist())
+        place = planted.schema.get_field_index("C2")
+        told = strongest_interactions(planted.set_column(place, "C2", verdicts), readings)
+        found += "C2" in told.column("outcome").to_pylist()
+    # At 95 % for all pairs together one in 20 is expected; three in 10 has a chance of 1 %.
+    assert found < 3
+
+
+def test_no_more_than_asked_for_are_told(planted, readings):
+    for outcome in range(2):
+        table = strongest_interactions(planted, readings, most=outcome)
+        assert table.num_rows == outcome * len(set(table.column("outcome").to_pylist()))
+    assert "interaction" in table.column_names
