@@ -31,7 +31,7 @@ def test_what_is_left_is_what_lives_and_robots_have_to_live():
     own = pace(lives=4, teachers=1, measured=3_000, seconds=2.0)
     assert own.speed() == pytest.approx(1_500.0)
     assert own.left() == pytest.approx((4_000 + 60 * 50) / 1_500.0)
-    assert str(own) == "0.0 million steps/s, about 5 s left"
+    assert str(own) == "about 5 s left, 0.0 million steps/s"
 
 
 def test_nothing_is_left_at_the_end():

@@ -178,5 +178,5 @@ def test_it_is_told_how_far_it_is(small, finished, tmp_path):
         ("Lives", 8, 16),
         ("Lives", 8, 16),
     ]
-    assert told[1][3] == "1 of 2 cases, time left not known yet"
-    assert told[2][3].startswith("2 of 2 cases, ")
+    assert told[1][3] == "time left not known yet, 1 of 2 cases"
+    assert told[2][3].endswith(", 2 of 2 cases")

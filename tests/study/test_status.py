@@ -49,7 +49,7 @@ def test_one_that_is_run_says_by_whom_and_how_long_still(copied):
         line = status(Results(copied))[-1]
         # 2,000 steps in the second since the first part; 8 lives of 150 steps are left.
         assert line.startswith("run by process ")
-        assert line.endswith("; 0.0 million steps/s, about 1 s left")
+        assert line.endswith("; about 1 s left, 0.0 million steps/s")
     with logging_to(copied / "log.jsonl") as log:
         log("end", why="interrupted")
     assert status(Results(copied))[-1] == "not run by anybody"

@@ -181,5 +181,5 @@ class _Run:
             return
         seconds = 0.0 if self.clock is None else time.monotonic() - self.clock
         pace = Pace(self.tally, self.plan.steps_to_learn, self.measured, seconds)
-        cases = f"{self.tally.finished_cases:,} of {len(self.plan.cases):,} cases, "
-        self.tell(TASKS[kind], rows, total, (cases if kind == "lives" else "") + str(pace))
+        cases = f", {self.tally.finished_cases:,} of {len(self.plan.cases):,} cases"
+        self.tell(TASKS[kind], rows, total, str(pace) + (cases if kind == "lives" else ""))
