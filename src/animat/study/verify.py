@@ -88,15 +88,8 @@ def _wrong(directory: Path, plan: Plan, part: Part) -> Iterator[str]:
             yield f"{path}: is torn"
         elif seal.identity != part_identity(plan, part):
             yield f"{path}: holds other lives than it should"
-        elif _content_now(path) != seal.content:
+        elif content_of(path) != seal.content:
             yield f"{path}: has changed since it was written"
-
-
-def _content_now(path: Path) -> str | None:
-    try:
-        return content_of(path)
-    except (OSError, ValueError):
-        return None
 
 
 def _taught_by(plan: Plan, part: Part) -> set[Part]:
