@@ -69,15 +69,17 @@ def rows(
 
     A column that is missing is null.
     """
-    failed = np.array([error is not None for error in errors], bool)
-    there = pa.array(np.arange(len(errors)), mask=failed)
-    columns = {**columns, "error": pa.array(errors, pa.string())}
+    count = len(errors)
+    there = None
+    if any(errors):
+        there = pa.array(np.arange(count), mask=np.array([bool(each) for each in errors], bool))
+        columns = {**columns, "error": pa.array(errors, pa.string())}
     filled = []
     for column in wanted:
         values = columns.get(column.name)
         if values is None:
-            values = pa.nulls(len(errors), column.type)
-        elif failed.any() and column.name not in {*NAMES, "error"}:
+            values = pa.nulls(count, column.type)
+        elif there is not None and column.name not in {*NAMES, "error"}:
             values = values.take(there)
         filled.append(values)
     return pa.table(filled, schema=wanted)

@@ -59,6 +59,11 @@ class Watched:
     curve: NDArray[np.float64] | None = None
     earlier: list[Snapshot] = field(default_factory=list)
 
+    @property
+    def failed(self) -> int:
+        """How many of them failed."""
+        return len(self.errors) - self.errors.count(None)
+
 
 @dataclass(frozen=True)
 class Company:

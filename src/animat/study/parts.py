@@ -58,7 +58,7 @@ def live_part(text: str, part: Part, networks: Networks, stop: Event | None = No
     plan = plan_of(text)
     lived = live_pieces(plan, part.kind, plan.pieces(part), networks, stop)
     identity = part_identity(plan, part)
-    failed = sum(error is not None for one in lived for error in one.watched.errors)
+    failed = sum(one.watched.failed for one in lived)
     steps = sum(int(one.watched.states["step"].sum()) for one in lived)
     files = {}
     for path in file_names(plan, part):

@@ -31,8 +31,8 @@ from animat.study.tally import Tally
 LOOK_EVERY = 0.2
 """Seconds between two looks for Ctrl-C while nothing is finished."""
 
-AHEAD = 2
-"""Parts handed out for each worker, so that it finds another when it has finished one."""
+AHEAD = 4
+"""Parts handed out for each worker, so that none waits while others are written."""
 
 NETWORKS_KEPT = 64
 """Classes of robots whose networks are kept in memory."""
