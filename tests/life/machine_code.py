@@ -9,16 +9,29 @@ arithmetic of it may be rearranged or fused.
 from __future__ import annotations
 
 import importlib
+import json
 import pkgutil
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 from llvmlite import binding
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 
 import animat
+from animat.life.life import live
+from animat.life.likelihoods import likelihoods
+from animat.life.setting import bring_together
+from animat.mind.mind import Mind
+from animat.world.world import World
+
+SCRIPT = Path(__file__)
+EXAMPLE = SCRIPT.parents[2] / "docs" / "examples" / "product.py"
 
 WRAPPER = re.compile(r"_ZN7cpython|cfunc\.")
 """How the names of the functions begin by which Python calls a kernel; they unpack Python objects,
@@ -41,6 +54,32 @@ TABLE = re.compile(r"@switch\.table\.")
 STRING = re.compile(r'c?"(?:[^"\\]|\\.)*"')
 DEFINITION = re.compile(r"^define .*?^}", re.MULTILINE | re.DOTALL)
 NAME = r'@(?:"([^"]+)"|([-\w.$]+))'
+
+
+def codes() -> dict[str, list[str]]:
+    """Return the code of every kernel of the package; of those of a step, with a user's function
+    too.
+
+    They are compiled in a process of its own: in this one they may have been, with the functions
+    of other tests, which do what they like.
+    """
+    command = [sys.executable, "-W", "error", str(SCRIPT)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def child() -> None:
+    """Print what `codes` returns."""
+    world = World.random({"TS": 1, "CL": 1}, seed=3)
+    setting = bring_together(Mind(), world)
+    states, _ = setting.begin(1, np.arange(2, dtype=np.uint64))
+    likelihoods(setting, states)
+    for mind in (Mind(), Mind(selector=f"{EXAMPLE}:product")):
+        for record in (None, "all"):
+            life = live(mind, world, steps=10, record=record)
+            life.networks.likelihoods(dict.fromkeys(world.feature_names, 0.0))
+    found = {name: intermediate_codes(kernel) for name, kernel in kernels().items()}
+    sys.stdout.write(json.dumps(found))
 
 
 def kernels() -> dict[str, Any]:
@@ -136,3 +175,7 @@ def alone(code: str) -> str:
     ]
     whole = "\n".join([*rest, *texts.values()]).replace("linkonce_odr ", "")
     return re.sub(r'"target-(?:cpu|features)"="[^"]*"', "", whole)
+
+
+if __name__ == "__main__":
+    child()

@@ -13,15 +13,9 @@ import numba
 import numpy as np
 import pytest
 
-from animat.life.life import live
-from animat.life.likelihoods import likelihoods
-from animat.life.setting import bring_together
-from animat.mind.mind import Mind
 from animat.numerics.compiled import OPTIONS
-from animat.world.world import World
 
 HERE = Path(__file__).parent
-EXAMPLE = HERE.parents[1] / "docs" / "examples" / "product.py"
 
 STEPS = ("animat.life.slices.live_slice", "animat.life.slices.live_recorded")
 
@@ -40,23 +34,11 @@ machine_code = loaded("machine_code")
 
 @pytest.fixture(scope="module")
 def codes() -> dict[str, list[str]]:
-    """The code of every kernel of the package; of those of a step, with a user's function too."""
-    world = World.random({"TS": 1, "CL": 1}, seed=3)
-    setting = bring_together(Mind(), world)
-    states, _ = setting.begin(1, np.arange(2, dtype=np.uint64))
-    likelihoods(setting, states)
-    for mind in (Mind(), Mind(selector=f"{EXAMPLE}:product")):
-        for record in (None, "all"):
-            life = live(mind, world, steps=10, record=record)
-            life.networks.likelihoods(dict.fromkeys(world.feature_names, 0.0))
-    return {
-        name: machine_code.intermediate_codes(kernel)
-        for name, kernel in machine_code.kernels().items()
-    }
+    return machine_code.codes()
 
 
 def test_every_kernel_is_looked_at(codes):
-    """Whoever adds one has it run in the fixture above."""
+    """Whoever adds one has it run in machine_code.py."""
     assert [name for name, found in codes.items() if not found] == []
     for name in STEPS:
         assert len(codes[name]) >= 2
