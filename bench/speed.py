@@ -1,110 +1,173 @@
-"""How fast a step is: nanoseconds per robot-step on one core, by world, agent and sensor model.
+"""How fast a step is on one core: nanoseconds by world, sensors and agent, and by size of arena.
 
-    python bench/speed.py [--repeat 5] [--json FILE]
+    python bench/speed.py [--repeat 9] [--json FILE] [--markdown]
 
 Noise is on. Lives are kept from dying so that every figure is over the same number of steps. Times
-are of the processor, not of the clock, and each is the least of the repeats: other programs on the
-machine only ever add to it.
+are of the processor; each is the least of the repeats, which are taken in turns.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
-import resource
-import sys
 import time
-from pathlib import Path
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from statistics import median
+from typing import NamedTuple
 
 import numpy as np
 
 import animat
+import figures
 from animat.life.lives import live_on
 from animat.life.setting import Setting, bring_together
-from animat.study.provenance import provenance
+from figures import Table, Target
 
-LIVES = 8
-STEPS = 20_000
+AGENTS = ("BLIND", "AF", "LEARNING")
+SENSORS = ("michel1996", "linear")
+
 DENSITY = 8
 """Objects per square metre of the arenas of equal density."""
 
+MILLIONS = {"abundant": 6.0, "scarce": 8.0, "empty": 10.0}
+"""The least robot-steps per second, in millions, of BLIND with michel1996 in these worlds."""
 
-def arena(metres: int) -> animat.World:
+GROWTH = 1.1
+"""How much dearer a step may be in an arena of 4 m by 4 m than in one of 1 m by 1 m."""
+
+
+class Size(NamedTuple):
+    """How much is measured."""
+
+    lives: int = 8
+    steps: int = 20_000
+    spread: int = 64
+    """Lives in the arenas that are compared, from starts all over them."""
+    layouts: int = 5
+
+
+TINY = Size(lives=2, steps=200, spread=4, layouts=2)
+
+
+def arena(metres: int, seed: int = 1) -> animat.World:
     """Return a square arena of so many metres, with DENSITY objects to a square metre."""
     size = 1000.0 * metres
     each = DENSITY * metres * metres // 4
     return animat.World.random(
         dict.fromkeys(("TS", "TL", "CS", "CL"), each),
-        seed=1,
+        seed=seed,
         arena=animat.Arena(width=size, height=size),
         name=f"{metres} m x {metres} m, {4 * each} objects",
     )
 
 
-def nanoseconds(setting: Setting, repeat: int) -> float:
-    """Return the least time of a step over some repeats."""
-    lives = np.arange(LIVES, dtype=np.uint64)
-    best = np.inf
-    for _ in range(repeat):
-        states, present = setting.begin(1, lives)
+def timing(setting: Setting, lives: int, steps: int) -> Callable[[], float]:
+    """Return a function that lives and returns the nanoseconds of a step."""
+    indices = np.arange(lives, dtype=np.uint64)
+
+    def measure() -> float:
+        states, present = setting.begin(1, indices)
         start = time.thread_time()
-        live_on(setting, 1, lives, states, present, STEPS)
-        best = min(best, time.thread_time() - start)
-    return 1e9 * best / (LIVES * STEPS)
+        live_on(setting, 1, indices, states, present, steps)
+        return 1e9 * (time.thread_time() - start) / (lives * steps)
+
+    return measure
 
 
-def peak_memory() -> float:
-    """Return the largest memory this process has had, in MB."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+def minds() -> dict[str, animat.Mind]:
+    """Return an immortal mind of every agent; AF knows what one LEARNING robot has learnt."""
+    learnt = animat.live(animat.Mind(agent="LEARNING"), animat.World.abundant(), seed=1).networks
+    known = {"AF": learnt}
+    return {
+        agent: animat.Mind(agent=agent, death=False, networks=known.get(agent)) for agent in AGENTS
+    }
 
 
-def main() -> None:
-    """Measure, print a table, and write it as JSON where asked."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--repeat", type=int, default=9)
-    parser.add_argument("--json", type=Path)
-    options = parser.parse_args()
-    made = provenance()
-    start = time.perf_counter()
-    animat.live(animat.Mind(), animat.World.abundant(), steps=1)
-    made["first life, seconds"] = time.perf_counter() - start
-    before = peak_memory()
-    animat.live(animat.Mind(death=False), animat.World.abundant(), steps=5_000_000)
-    made["memory that 5,000,000 steps add, MB"] = peak_memory() - before
+def by_world(size: Size, repeat: int) -> Table:
+    """Measure every world, sensor model and agent."""
     worlds = [
         animat.World.abundant(),
         animat.World.scarce(),
-        animat.World.random({"TS": 0}, name="empty"),
-        arena(1),
-        arena(2),
-        arena(4),
+        animat.World.random({}, name="empty"),
+        *(arena(metres) for metres in (1, 2, 4)),
     ]
+    measures = {
+        (world.name, sensors, agent): timing(
+            bring_together(mind, world, animat.Khepera(infrared=sensors)), size.lives, size.steps
+        )
+        for world in worlds
+        for sensors in SENSORS
+        for agent, mind in minds().items()
+    }
+    taken = figures.in_turns(measures, repeat)
+    least = {key: min(times) for key, times in taken.items()}
     rows = []
     for world in worlds:
-        for agent in ("BLIND", "LEARNING", "ORACLE"):
-            for infrared in ("michel1996", "linear"):
-                mind = animat.Mind(agent=agent, death=False)
-                setting = bring_together(mind, world, animat.Khepera(infrared=infrared))
-                cost = nanoseconds(setting, options.repeat)
-                rows.append(
-                    {
-                        "world": world.name,
-                        "agent": agent,
-                        "infrared": infrared,
-                        "ns per step": round(cost, 1),
-                        "million steps per second": round(1e3 / cost, 2),
-                    }
-                )
-                print(
-                    f"{world.name:28s} {agent:9s} {infrared:11s} {cost:7.1f} ns"
-                    f" {1e3 / cost:6.2f} M/s",
-                    flush=True,
-                )
-    made["steps"] = rows
-    if options.json:
-        options.json.write_text(json.dumps(made, indent=2) + "\n", encoding="utf-8")
-    print(json.dumps({key: value for key, value in made.items() if key != "steps"}, indent=2))
+        for sensors in SENSORS:
+            costs = {agent: least[world.name, sensors, agent] for agent in AGENTS}
+            speed = 1e3 / costs["BLIND"]
+            wanted = MILLIONS.get(world.name) if sensors == SENSORS[0] else None
+            rows.append(
+                {"world": world.name, "sensors": sensors}
+                | {f"{agent}, ns": cost for agent, cost in costs.items()}
+                | {
+                    "BLIND, million steps/s": speed,
+                    "target": Target(speed, wanted, at_least=True) if wanted else None,
+                }
+            )
+    share = median(median(times) / min(times) for times in taken.values())
+    return Table(
+        "A robot-step on one core",
+        rows,
+        f"Nanoseconds of the processor, the least of {repeat} turns over {size.lives} lives of "
+        f"{size.steps:,} steps; the median of the turns is {share:.2f} times as much. "
+        "World 1 is abundant, World 2 scarce.",
+    )
+
+
+def by_arena(size: Size, repeat: int) -> Table:
+    """Compare arenas of 1 m by 1 m and of 4 m by 4 m, several layouts of each."""
+    mind = animat.Mind(death=False)
+    measures = {
+        (seed, metres): timing(bring_together(mind, arena(metres, seed)), size.spread, size.steps)
+        for seed in range(1, size.layouts + 1)
+        for metres in (1, 4)
+    }
+    least = {key: min(times) for key, times in figures.in_turns(measures, repeat).items()}
+    rows = [
+        row(str(seed), least[seed, 1], least[seed, 4], None) for seed in range(1, size.layouts + 1)
+    ]
+    small, large = (float(np.mean(list(of(metres, least)))) for metres in (1, 4))
+    rows.append(row("mean", small, large, Target(large / small, GROWTH, at_least=False)))
+    return Table(
+        "16 times the area with 16 times the objects",
+        rows,
+        f"BLIND, michel1996, {DENSITY} objects to a square metre, laid out anew for every seed; "
+        f"{size.spread} lives of {size.steps:,} steps, which start all over the arena.",
+    )
+
+
+def of(metres: int, least: dict[tuple[int, int], float]) -> Iterable[float]:
+    """Return the times in arenas of so many metres."""
+    return (cost for (_, size), cost in least.items() if size == metres)
+
+
+def row(layout: str, small: float, large: float, target: Target | None) -> dict[str, object]:
+    """Return a row of the comparison of arenas."""
+    return {
+        "layout": layout,
+        "1 m x 1 m, ns": small,
+        "4 m x 4 m, ns": large,
+        "ratio": large / small,
+        "target": target,
+    }
+
+
+def tables(repeat: int, tiny: bool) -> Iterator[Callable[[], Table]]:
+    """Yield what makes each table."""
+    size = TINY if tiny else Size()
+    yield partial(by_world, size, repeat)
+    yield partial(by_arena, size, repeat)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    figures.run(__doc__, tables, repeat=9)

@@ -19,7 +19,10 @@ import animat.study.publication
 from animat.cli import main
 from animat.life.life import live
 from animat.mind.mind import Mind
+from animat.mind.parameters import parameters
 from animat.world.world import World
+
+PRODUCT = Path(__file__).parents[1] / "docs" / "examples" / "product.py"
 
 SMALL = ("--lives", "2", "--seeds", "1", "--steps", "60")
 
@@ -136,6 +139,30 @@ WRONG = {
     "life --settings .": [".: is a directory, not a settings file"],
     "life --stps 3": ["No such option: --stps", "--steps"],
     "life extra": ["(extra)"],
+    "life --record a.csv": ["a.csv: give a name that ends in .parquet"],
+    "life --record there.parquet": ["there.parquet: is there already; --force replaces it"],
+    "life --record a.parquet --every 0": ["every = 0; allowed"],
+    "life --record a.parquet --every many": ["'--every'"],
+    "life --every 5": ["--every is of a recording; give --record FILE with it"],
+    "life --at 5": ["--at is a step of a recording; give --from FILE with it"],
+    "life --from none.parquet": ["none.parquet: no such file"],
+    "life --from there.parquet": ["there.parquet: is empty"],
+    "life --from world.toml --at 1": ["world.toml: is no recording"],
+    "life --from x --seed 0 --agent AF --life 1 --world abundant": [
+        "--world cannot go with --from: the recording says it",
+        "--agent cannot go with --from",
+        "--seed cannot go with --from",
+        "--life cannot go with --from",
+    ],
+    "life --from x --physiology decay --settings world.toml --at x": ["'--at'"],
+    "life --from x --physiology decay --settings world.toml": ["--physiology", "--settings"],
+    "replay": ["Missing argument 'FILE'"],
+    "replay none.parquet": ["none.parquet: no such file"],
+    "replay there.parquet --verify": ["there.parquet: is empty"],
+    "replay world.toml": ["world.toml: is no recording: it does not begin like one"],
+    "replay directory.parquet": ["directory.parquet: is a directory, not a recording"],
+    "replay there.parquet more": ["(more)"],
+    "replay there.parquet --verfy": ["No such option: --verfy", "--verify"],
     "lif": ["No such command 'lif'"],
     "reproduce --lives 1": ["lives = 1; a comparison needs"],
     "reproduce --lives 1 --seeds 0": ["seeds = 0; Experiment 1 needs", "lives = 1"],
@@ -231,15 +258,112 @@ def test_a_mistake_of_ours_is_one_line_and_code_1(animat_says, monkeypatch, erro
 
 
 def test_help_names_the_commands_and_their_options(animat_says):
-    assert {"reproduce", "life"} <= set(animat_says("--help").out.split())
+    assert {"reproduce", "life", "replay"} <= set(animat_says("--help").out.split())
     for command, options in {
         "reproduce": "lives seeds steps physiology seed out settings quick force debug",
-        "life": "world agent physiology seed life steps settings trace figure force debug",
+        "life": "world agent physiology seed life steps settings trace figure record every from at"
+        " force debug",
+        "replay": "verify debug",
     }.items():
         said = animat_says(command, "--help")
         assert said.code == 0
         for option in options.split():
             assert f"--{option}" in said.out
+
+
+class TestReplay:
+    RECORD = ("life", "--agent", "LEARNING", "--steps", "400", "--every", "150", "--record")
+
+    def test_a_recording_is_shown_and_is_the_same_life(self, animat_says, tmp_path):
+        (tmp_path / "mine.toml").write_text("[mind.variables.nutrition]\nset_point = 0.7\n")
+        told = animat_says(*self.RECORD, "a.parquet", "--settings", "mine.toml", "--seed", "3")
+        assert told.out.startswith("LEARNING in abundant, physiology excess, seed 3, life 0\n")
+        said = animat_says("replay", "a.parquet")
+        assert (said.code, said.err) == (0, "")
+        lines = said.out.splitlines()
+        assert lines[0] == "LEARNING in abundant, physiology excess, seed 3, life 0"
+        assert lines[1] == "steps 0 to 399 of 400 at most; alive at the end"
+        assert lines[2].startswith("4 states, one every 150 steps; digest at the end ")
+        for words in (
+            "2 TS, 2 TL, 2 CS, 2 CL",
+            "by animat life --agent LEARNING",
+            "engine 1, python 3.",
+            "set_point = 0.7",
+        ):
+            assert words in said.out
+        said = animat_says("replay", "a.parquet", "--verify")
+        assert said.code == 0
+        assert said.out == "the same life: all 400 steps and 4 states agree\n"
+        assert "Life again, steps: 400 of 400" in said.err
+
+    def test_a_death_and_a_function_are_shown(self, animat_says, tmp_path):
+        (tmp_path / "mine.toml").write_text(
+            '[mind]\nselector = "mine.py:mine"\n[mind.variables.stamina]\nstart = 0.97\n'
+        )
+        (tmp_path / "mine.py").write_bytes(PRODUCT.read_bytes().replace(b"product", b"mine"))
+        told = animat_says("life", "--settings", "mine.toml", "--record", "a.parquet")
+        how = told.out.splitlines()[1].partition(" and ")[2]
+        for name in ("mine.toml", "mine.py"):
+            (tmp_path / name).unlink()
+        said = animat_says("replay", "a.parquet")
+        assert said.code == 0
+        assert said.out.splitlines()[1].endswith(f"of 300,000 at most; {how}")
+        assert "\nselector mine.py:mine\n" in said.out
+        for command in (("replay", "--verify"), ("life", "--at", "3", "--from")):
+            said = animat_says(*command, "a.parquet")
+            assert (said.code, said.out) == (2, "")
+            assert said.err.startswith('animat: a.parquet: selector = "mine.py:mine": no such')
+        (tmp_path / "mine.py").write_bytes(PRODUCT.read_bytes().replace(b"product", b"mine") + b"#")
+        said = animat_says("replay", "--verify", "a.parquet")
+        assert said.code == 2
+        assert said.err == (
+            "animat: a.parquet: selector: mine.py:mine has changed since the life was recorded\n"
+        )
+
+    def test_another_life_is_told_field_by_field(self, animat_says, monkeypatch):
+        assert animat_says(*self.RECORD, "a.parquet").code == 0
+
+        def otherwise(mind, affordances):
+            record = parameters(mind, affordances)
+            record.factor *= 1.0 - 1e-7
+            return record
+
+        monkeypatch.setattr("animat.life.setting.parameters", otherwise)
+        said = animat_says("replay", "a.parquet", "--verify")
+        assert said.code == 1
+        lines = said.out.splitlines()
+        assert lines[0] == "another life: step 0 is the first that differs"
+        assert lines[1].split() == ["recorded", "lived", "again"]
+        names = [line.split()[0] for line in lines[2:]]
+        assert names == [*Mind().resolved_variables(), *Mind().drives]
+        for line in lines[2:]:
+            _, old, new = line.split()
+            assert float(old) != float(new)
+            assert float(old) == pytest.approx(float(new), abs=1e-5)
+        assert "Traceback" not in said.err
+
+    def test_an_altered_recording_is_refused_and_placed(self, animat_says, tmp_path):
+        assert animat_says(*self.RECORD, "a.parquet").code == 0
+        path = tmp_path / "a.parquet"
+        content = bytearray(path.read_bytes())
+        content[len(content) // 4] ^= 1
+        path.write_bytes(content)
+        for command in (("replay",), ("replay", "--verify"), ("life", "--from")):
+            said = animat_says(*command, "a.parquet")
+            assert (said.code, said.out) == (2, "")
+            (line,) = said.err.splitlines()
+            assert line.startswith("animat: a.parquet: is altered between bytes 0 and ")
+            assert line.endswith(": steps 0 to 399")
+
+    def test_a_recorded_life_goes_on(self, animat_says):
+        assert animat_says(*self.RECORD, "a.parquet").code == 0
+        whole = animat_says("life", "--agent", "LEARNING", "--steps", "800")
+        for at in (("--at", "0"), ("--at", "149"), ()):
+            said = animat_says("life", "--from", "a.parquet", *at, "--steps", "800")
+            assert (said.code, said.out) == (0, whole.out)
+        said = animat_says("life", "--from", "a.parquet")
+        assert (said.code, said.out) == (2, "")
+        assert said.err == "animat: steps = 400: the life has lived 400 steps already; give more\n"
 
 
 class TestReproduce:
@@ -271,13 +395,13 @@ class TestReproduce:
         assert animat_says("reproduce", *SMALL).code == 2
         assert (out / "lives.parquet").is_file()
         assert animat_says("reproduce", *SMALL, "--force").code == 0
-        assert names(out) == ["report.html"]
+        assert names(out) == ["experiment1", "experiment2", "report.html"]
         assert names(tmp_path / "results") == ["reproduction"]
 
     def test_quick_is_small_and_may_be_changed(self, animat_says, monkeypatch):
         sizes = []
 
-        def run(settings, *, seed, size, tell):
+        def run(settings, *, seed, size, directory, tell, anew):
             sizes.append(size)
             raise KeyboardInterrupt
 
@@ -290,7 +414,9 @@ class TestReproduce:
         assert changed == quick._replace(lives=7)
         assert seeds == full._replace(robots=3)
 
-    def test_an_interruption_leaves_everything_as_it_was(self, animat_says, monkeypatch, tmp_path):
+    def test_an_interruption_leaves_an_earlier_result_and_what_is_finished(
+        self, animat_says, monkeypatch, tmp_path
+    ):
         old = tmp_path / "results" / "reproduction"
         old.mkdir(parents=True)
         (old / "how_made.json").write_text("old")
@@ -304,14 +430,25 @@ class TestReproduce:
             said = animat_says("reproduce", *SMALL, *options)
             assert (said.code, said.out) == (130, "")
             assert said.err.endswith("animat: interrupted; nothing is half-written\n")
-        assert names(tmp_path) == ["results"]
-        assert names(tmp_path / "results") == ["reproduction"]
+        assert names(tmp_path / "results") == [".reproduction.partial", "reproduction"]
         assert names(old) == ["how_made.json"]
+        assert names(tmp_path / "new") == [".one.partial"]
+
+        monkeypatch.setattr(animat.study.publication, "publish", briefly)
+        said = animat_says("reproduce", *SMALL, "--seed", "1", "--out", "new/one")
+        assert said.code == 2
+        assert "seed = 0 there and 1 here" in said.err
+        assert "--force begins anew" in said.err
+        assert animat_says("reproduce", *SMALL, "--out", "new/one").code == 0
+        assert names(tmp_path / "new") == ["one"]
+        log = (tmp_path / "new" / "one" / "experiment1" / "log.jsonl").read_text()
+        assert log.count('"event": "start"') == 2
+        assert log.count('"event": "part"') == 1
 
 
 def started(directory: Path) -> bool:
     """Whether a run has begun to fill a directory of its own."""
-    return any(path.name.startswith(".out.partial-") for path in directory.iterdir())
+    return any((directory / ".out.partial").glob("experiment2/lives/part-*"))
 
 
 @pytest.fixture
@@ -324,28 +461,40 @@ def interruptible():
 
 @pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGKILL])
-def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name(
+def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name_and_is_gone_on_with(
     sent, tmp_path, animat_says, monkeypatch
 ):
-    run = start("reproduce", "--lives", "1000000", "--out", "out", cwd=tmp_path)
+    size = ("--lives", "40000", "--seeds", "1", "--steps", "60")
+    run = start("reproduce", *size, "--out", "out", cwd=tmp_path)
     while not started(tmp_path):
         assert run.poll() is None
         time.sleep(0.02)
-    time.sleep(0.3)
     run.send_signal(sent)
     out, err = run.communicate(timeout=60)
     assert out == ""
     assert "Traceback" not in err
-    assert not (tmp_path / "out").exists()
+    assert names(tmp_path) == [".out.partial"]
     if sent == signal.SIGINT:
-        # A shell shows 130 for either: Python dies of the signal where it hit an `exec`.
-        assert run.returncode in {130, -signal.SIGINT}
-        assert err.endswith("animat: interrupted; nothing is half-written\n")
-        assert names(tmp_path) == []
-    else:
-        monkeypatch.setattr(animat.study.publication, "publish", briefly)
-        assert animat_says("reproduce", *SMALL, "--out", "out").code == 0
-        assert (tmp_path / "out" / "report.html").is_file()
+        assert run.returncode == 130
+        assert "interrupted: finishing the parts that are under way" in err
+        kept = tmp_path / ".out.partial"
+        assert err.endswith(
+            f"animat: what is finished is kept in {kept}; the same command goes on with it\n"
+            "animat: interrupted; nothing is half-written\n"
+        )
+    log = tmp_path / ".out.partial" / "experiment2" / "log.jsonl"
+    before = log.read_text().count('"event": "part", ')
+    assert before > 0
+    monkeypatch.setattr(animat.study.publication, "publish", briefly)
+    assert animat_says("reproduce", *size, "--out", "out").code == 0
+    assert names(tmp_path) == ["out"]
+    log = tmp_path / "out" / "experiment2" / "log.jsonl"
+    parts = [json.loads(line) for line in log.read_text().splitlines() if '"part"' in line]
+    numbers = [part["number"] for part in parts if part["kind"] == "lives"]
+    # Where it was killed, the line of the last part may not have been written, or the part not.
+    unsure = 0 if sent == signal.SIGINT else 1
+    assert 64 - unsure <= len(set(numbers)) <= 64
+    assert len(numbers) - len(set(numbers)) <= unsure
 
 
 def test_a_reader_that_stops_reading_is_no_error_to_talk_of(tmp_path):

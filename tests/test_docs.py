@@ -20,7 +20,8 @@ from animat.mind.physiology import PHYSIOLOGIES, Variable
 from animat.robot.khepera import Khepera
 from animat.settings import Settings, SettingsError, read_toml
 from animat.study.design import Exclusion
-from animat.study.plan import Plan
+from animat.study.plan import Plan, plan_of
+from animat.study.run import run, threads
 from animat.study.sampling import Sample
 from animat.study.settings import LifeSettings, Teacher, WorldChoice
 from animat.study.study import Record, Study, read_study
@@ -28,6 +29,10 @@ from animat.world.world import World
 
 ROOT = Path(__file__).parents[1]
 STUDIES = ROOT / "docs" / "studies.md"
+RUNNING = ROOT / "docs" / "running.md"
+OF_STUDIES = [STUDIES, RUNNING]
+"""The pages that show study files, and not settings files."""
+
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 SMALLER = {"steps=300_000": "steps=2_000", "lives=1_000": "lives=4", "lives=100": "lives=4"}
@@ -67,7 +72,9 @@ def here(tmp_path, monkeypatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("block", shown("toml", [page for page in PAGES if page != STUDIES]))
+@pytest.mark.parametrize(
+    "block", shown("toml", [page for page in PAGES if page not in {STUDIES, RUNNING}])
+)
 def test_every_file_shown_is_accepted(here, block):
     file = here / "shown.toml"
     file.write_text(block.text)
@@ -81,7 +88,7 @@ def test_every_file_shown_is_accepted(here, block):
         assert settings.mind.model_fields_set | settings.robot.model_fields_set
 
 
-@pytest.mark.parametrize("block", shown("toml", [STUDIES]))
+@pytest.mark.parametrize("block", shown("toml", OF_STUDIES))
 def test_every_study_shown_is_accepted_or_refused_as_shown(here, block):
     file = Path("wrong.toml")
     file.write_text(block.text)
@@ -105,6 +112,8 @@ def test_every_program_shown_runs_and_says_what_is_shown(here, capsys, page):
     """The programs of a page share their names, as they would in a notebook."""
     names: dict[str, Any] = {"__name__": "shown"}
     shown_here = blocks(page)
+    if page == RUNNING:
+        live_small(shown_here[0].text, here / "results" / "lifespan")
     for number, (language, text, _) in enumerate(shown_here):
         if language != "python":
             continue
@@ -123,6 +132,16 @@ def test_every_program_shown_runs_and_says_what_is_shown(here, capsys, page):
                 raise
             said = f"{error}\n"
         assert answer in {None, said}
+
+
+def live_small(text: str, directory: Path) -> None:
+    """Live the study that a page is about, so that its programs find results."""
+    study = directory.parent.parent / "shown.toml"
+    study.write_text(text)
+    smaller = ("lives=4", "steps=100", "teacher.robots=2", "teacher.steps=100")
+    plan = plan_of(read_study(study, smaller).to_toml())
+    with threads(1) as workers:
+        assert run(plan, directory, workers, lambda *_, **__: None).complete
 
 
 def test_the_python_of_the_readme_is_run_small():

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from animat import progress
-from animat.progress import LINE_EVERY, telling
+from animat.progress import LINE_EVERY, in_words, telling
 
 
 class Clock:
@@ -49,9 +49,9 @@ def test_long_work_is_told_now_and_then_with_the_time_left(capsys, clock):
         tell("Lives", 900, 1_000)
     lines = capsys.readouterr().err.splitlines()
     assert lines == [
-        "Lives: 30 of 1,000, 162 s left",
-        "Lives: 55 of 1,000, 172 s left",
-        "Lives: 80 of 1,000, 172 s left",
+        "Lives: 30 of 1,000, about 3 min left",
+        "Lives: 55 of 1,000, about 3 min left",
+        "Lives: 80 of 1,000, about 3 min left",
         "Lives: 1,000 of 1,000, 20 s",
     ]
     assert LINE_EVERY == 5.0
@@ -65,12 +65,46 @@ def test_tasks_are_told_apart(capsys, clock):
     assert capsys.readouterr().err == "Two: 2 of 2, 0 s\nOne: 2 of 2, 0 s\n"
 
 
-def test_nothing_done_yet_divides_nothing(capsys, clock):
+def test_nobody_can_tell_what_is_left_before_anything_is_done(capsys, clock):
     with telling() as tell:
         tell("Lives", 0, 10)
         clock.now += 6.0
         tell("Lives", 0, 10)
-    assert capsys.readouterr().err == "Lives: 0 of 10, 60 s left\n"
+    assert capsys.readouterr().err == "Lives: 0 of 10\n"
+
+
+def test_what_was_done_before_is_no_part_of_the_speed(capsys, clock):
+    with telling() as tell:
+        tell("Lives", 900, 1_000)
+        clock.now += 10.0
+        tell("Lives", 20, 1_000)
+    assert capsys.readouterr().err == "Lives: 920 of 1,000, about 40 s left\n"
+
+
+def test_a_note_stands_in_the_place_of_the_time_left(capsys, clock):
+    with telling() as tell:
+        tell("Lives", 0, 10, "nobody knows")
+        clock.now += 6.0
+        tell("Lives", 5, 10, "2 of 4 cases")
+        tell("Lives", 5, 10, "4 of 4 cases")
+    assert capsys.readouterr().err == "Lives: 5 of 10, 2 of 4 cases\nLives: 10 of 10, 6 s\n"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0.2, "0 s"),
+        (99.4, "99 s"),
+        (99.6, "2 min"),
+        (3_600.0, "60 min"),
+        (5_970.0, "1 h 40 min"),
+        (7_500.0, "2 h 5 min"),
+        (47.9 * 3_600, "47 h 54 min"),
+        (72.2 * 3_600, "3 days"),
+    ],
+)
+def test_durations_are_said_as_people_say_them(seconds, words):
+    assert in_words(seconds) == words
 
 
 class Slow(int):
@@ -94,11 +128,13 @@ def test_a_terminal_gets_bars(monkeypatch):
     with telling() as tell, ThreadPoolExecutor(8) as pool:
         list(pool.map(lambda _: tell("Lives", 1, 100), range(100)))
         tell("Statistics", 1, 3)
+        tell("Noted", 1, 3, "two to go")
     shown = terminal.getvalue()
     assert "Lives" in shown
     assert "100/100" in shown
     assert "1/3" in shown
     assert "left" in shown
+    assert "two to go" in shown
 
 
 def test_bars_go_away_with_an_error(monkeypatch):

@@ -35,7 +35,7 @@ FLAGS = (
 
 SIZES = {"desk": (1280, 900), "phone": (375, 800)}
 
-PATIENCE = 60.0
+PATIENCE = 180.0
 """Seconds in which a page must have been looked at."""
 
 SEEN = """({

@@ -13,12 +13,14 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from animat.life.life import Life, live
+    from animat.life.life import Life, Moment, live
     from animat.life.lives import Lives, live_many
+    from animat.life.recording import Recording
     from animat.mind.mind import Behaviour, Drive, Learning, Mind, VariableChange
     from animat.mind.networks import Networks
     from animat.robot.khepera import Khepera
     from animat.settings import SettingsError
+    from animat.study.one_life import record
     from animat.world.arena import Arena
     from animat.world.layout import Layout, Placement
     from animat.world.objects import TABLE_1, ObjectType
@@ -34,15 +36,18 @@ _HOMES = {
     "Life": "animat.life.life",
     "Lives": "animat.life.lives",
     "Mind": "animat.mind.mind",
+    "Moment": "animat.life.life",
     "Networks": "animat.mind.networks",
     "ObjectType": "animat.world.objects",
     "Placement": "animat.world.layout",
+    "Recording": "animat.life.recording",
     "SettingsError": "animat.settings",
     "TABLE_1": "animat.world.objects",
     "VariableChange": "animat.mind.mind",
     "World": "animat.world.world",
     "live": "animat.life.life",
     "live_many": "animat.life.lives",
+    "record": "animat.study.one_life",
 }
 
 __all__ = [
@@ -56,14 +61,17 @@ __all__ = [
     "Life",
     "Lives",
     "Mind",
+    "Moment",
     "Networks",
     "ObjectType",
     "Placement",
+    "Recording",
     "SettingsError",
     "VariableChange",
     "World",
     "live",
     "live_many",
+    "record",
 ]
 
 

@@ -9,6 +9,9 @@ from contextlib import contextmanager
 from threading import Lock
 from typing import Protocol
 
+ROOM = 62
+"""Characters of a line of a terminal that the name, the bar, numbers and the time so far take."""
+
 LINE_EVERY = 5.0
 """Seconds between two lines where the output is no terminal."""
 
@@ -40,6 +43,7 @@ def telling() -> Iterator[Telling]:
         TimeElapsedColumn,
         TimeRemainingColumn,
     )
+    from rich.table import Column
     from rich.text import Text
 
     class Left(TimeRemainingColumn):
@@ -47,13 +51,14 @@ def telling() -> Iterator[Telling]:
             note = task.fields["note"]
             return Text(note) if note else Text("left ") + super().render(task)
 
+    console = Console(stderr=True)
     bars = Progress(
         TextColumn("{task.description}"),
-        BarColumn(),
+        BarColumn(bar_width=16),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
-        Left(),
-        console=Console(stderr=True),
+        Left(table_column=Column(no_wrap=True, max_width=max(16, console.width - ROOM))),
+        console=console,
     )
     tasks = {}
     lock = Lock()

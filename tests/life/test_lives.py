@@ -37,7 +37,7 @@ def test_the_number_of_threads_does_not_matter(threads, many, small):
 
 @pytest.mark.parametrize(("chunk", "length"), [(1, 10_000), (7, 333), (1_000, 1)])
 def test_chunks_and_slices_do_not_matter(chunk, length, many, small, monkeypatch):
-    monkeypatch.setattr(module, "chunk_size", lambda steps: chunk)
+    monkeypatch.setattr(module, "chunk_size", lambda steps, lives, threads: chunk)
     monkeypatch.setattr(module, "SLICE", length)
     steps, lives = (STEPS, 70) if length > 1 else (300, 10)
     told = live_many(Mind(), small, lives=lives, seed=6, steps=steps)
@@ -142,7 +142,7 @@ def test_chunks_that_nobody_waits_for_are_not_lived_on(small):
     before = threading.active_count()
     chunks.close()
     assert threading.active_count() < before
-    assert first["life"].to_pylist() == list(range(module.chunk_size(200)))
+    assert first["life"].to_pylist() == list(range(module.chunk_size(200, 1_000_000, 1)))
 
 
 @pytest.mark.parametrize(
@@ -185,3 +185,12 @@ def test_an_affordance_the_world_does_not_know_is_refused(small):
     behaviours = {"eat": {"serves": "hunger", "needs": "grip"}}
     with pytest.raises(LifeError, match='needs = "grip"'):
         live(Mind(behaviours=behaviours), small, steps=10)
+
+
+@pytest.mark.parametrize(("lives", "threads"), [(512, 2), (100_000, 2), (1_000_000, 16)])
+@pytest.mark.parametrize("steps", [100, 10_000, 300_000])
+def test_every_thread_takes_several_chunks_and_none_is_long(lives, threads, steps):
+    size = module.chunk_size(steps, lives, threads)
+    assert module.CHUNK <= size <= module.LARGEST_CHUNK
+    assert size * threads * module.TURNS <= lives + threads * module.TURNS or size == module.CHUNK
+    assert size * steps <= module.STEPS_OF_A_CHUNK or size == module.CHUNK

@@ -74,7 +74,7 @@ def made(gain):
 
 # Runs the kernel and says what came out and which functions were compiled on the way.
 CHILD = """
-import importlib.util, json, sys
+import importlib.util, json, sys, types
 from numba.core import event
 
 names = []
@@ -86,6 +86,10 @@ def loaded(file, name):
     spec.loader.exec_module(module)
     return getattr(module, name)
 
+def beside_a_namesake(file, name):
+    sys.modules["apart"] = types.ModuleType("apart")
+    return loaded(file, name)
+
 class Compilations(event.Listener):
     def on_start(self, event):
         names.append(event.data["dispatcher"].__name__)
@@ -95,7 +99,7 @@ class Compilations(event.Listener):
 with event.install_listener("numba:compile", Compilations()):
     import mine
     from animat.life.engine import run
-    own = eval(sys.argv[1], {**vars(mine), "loaded": loaded})
+    own = eval(sys.argv[1], {**globals(), **vars(mine)})
     print(json.dumps({"result": run(float(sys.argv[2]), own), "compiled": names}))
 """
 
@@ -214,6 +218,23 @@ def test_what_a_user_s_file_imports_is_not_overlooked(laboratory):
 def test_a_file_that_cannot_be_imported_by_its_name_is_found_again(laboratory):
     assert laboratory.run("loaded('mine.py', 'own')")[0] == 110
     assert laboratory.run("loaded('mine.py', 'own')") == (110, [])
+
+
+def test_what_was_compiled_beside_another_module_of_a_file_s_name_is_no_trap(laboratory):
+    """The compiler counts the file's functions to that module, which the next process lacks."""
+    assert laboratory.run("beside_a_namesake('mine.py', 'own')")[0] == 110
+    assert laboratory.run("loaded('mine.py', 'own')")[0] == 110
+    assert laboratory.run("loaded('mine.py', 'own')") == (110, [])
+
+
+def test_what_is_torn_is_compiled_anew(laboratory):
+    laboratory.run()
+    torn = [path for path in (laboratory.folder / "cache").rglob("*.nbc") if "run" in path.name]
+    assert torn
+    for path in torn:
+        path.write_bytes(path.read_bytes()[:-100])
+    assert laboratory.run()[0] == 110
+    assert laboratory.run() == (110, [])
 
 
 def test_a_function_that_is_gone_takes_no_other_with_it(laboratory):

@@ -101,6 +101,15 @@ def test_sine_and_cosine_are_within_one_unit(name):
 
 @given(st.floats(-1e6, 1e6))
 @settings(max_examples=300, deadline=None)
+def test_sine_and_cosine_are_within_one_unit_of_any_angle(angle):
+    """Hypothesis likes zeros, subnormals, whole numbers and ends, and looks for more."""
+    with mpmath.workprec(1300):
+        assert units_off([sine_cosine(angle)[0]], exact(mpmath.sin, [angle])) < 1
+        assert units_off([sine_cosine(angle)[1]], exact(mpmath.cos, [angle])) < 1
+
+
+@given(st.floats(-1e6, 1e6))
+@settings(max_examples=300, deadline=None)
 def test_sine_and_cosine_are_symmetrical_and_on_the_circle(angle):
     sine, cosine = sine_cosine(angle)
     assert sine_cosine(-angle) == (-sine, cosine)
@@ -110,13 +119,17 @@ def test_sine_and_cosine_are_symmetrical_and_on_the_circle(angle):
 
 def test_sine_and_cosine_of_round_angles():
     assert sine_cosine(0.0) == (0.0, 1.0)
+    assert math.copysign(1.0, sine_cosine(-0.0)[0]) == 1.0
     assert sine_cosine(5e-324) == (5e-324, 1.0)
+    assert sine_cosine(-SMALLEST_NORMAL) == (-SMALLEST_NORMAL, 1.0)
     assert sine_cosine(math.pi)[1] == -1
     assert sine_cosine(QUARTER)[0] == 1
     assert sine_cosine(-QUARTER)[0] == -1
 
 
-@pytest.mark.parametrize("angle", [math.nan, math.inf, -math.inf, np.nextafter(1e6, 2e6), -1e7])
+@pytest.mark.parametrize(
+    "angle", [math.nan, math.inf, -math.inf, np.nextafter(1e6, 2e6), -1e7, 1e308, -LARGEST]
+)
 def test_sine_and_cosine_say_when_they_cannot(angle):
     sine, cosine = sine_cosine(float(angle))
     assert math.isnan(sine)
@@ -142,6 +155,21 @@ def test_the_exponential_is_within_one_unit(name):
     truths = exact(mpmath.exp, xs)
     assert units_off(results, truths) < 1
     assert units_off(results[~subnormal], np.array(truths)[~subnormal]) < 0.75
+
+
+@given(st.floats(allow_nan=False))
+@settings(max_examples=300, deadline=None)
+def test_the_exponential_and_the_logistic_are_near_for_any_float(x):
+    """From the least subnormal to infinity, either way."""
+    if abs(x) > 800:
+        assert exponential(x) == (math.inf if x > 0 else 0)
+        assert logistic(x) == (1 if x > 0 else 0)
+    else:
+        overflows = x > math.log(LARGEST)
+        if not overflows:
+            assert units_off([exponential(x)], exact(mpmath.exp, [x])) < 1
+        assert (exponential(x) == math.inf) == overflows
+        assert units_off([logistic(x)], exact(lambda y: 1 / (1 + mpmath.exp(-y)), [x])) < 3
 
 
 def test_the_exponential_at_the_ends_of_the_range():

@@ -64,6 +64,14 @@ def test_lives_that_all_went_on_are_not_compared_by_their_length():
     assert len(in_short(found)) == 1
 
 
+def test_levels_that_live_alike_have_one_number_in_short():
+    table = lived([({"agent": "BLIND"}, 1e9), ({"agent": "AF"}, 1e9)], 5, cap=50)
+    place = table.column_names.index("censored")
+    table = table.set_column(place, "censored", pa.array([False] + [True] * 9))
+    said = in_short(find(table, ["agent"], resamples=99))[1]
+    assert said.startswith("agent: no difference shown; mean lifespan 50 steps at every level")
+
+
 def test_a_single_case_has_its_curve_with_all_lives():
     found = find(lived([({}, 300.0)], 20), [], resamples=99)
     (whole,) = result_sections(found)
@@ -115,7 +123,9 @@ def test_likelihoods_have_a_row_for_each_network_and_object():
 
 def test_what_cannot_be_told_apart_is_said_loudly():
     table = lived([({"a": "x", "b": "y"}, 300.0), ({"a": "z", "b": "w"}, 300.0)], 25)
-    sections = result_sections(find(table, ["a", "b"], resamples=99))
+    found = find(table, ["a", "b"], resamples=99)
+    sections = result_sections(found)
+    assert all(said.endswith("confounded with other factors.") for said in in_short(found)[1:])
     assert all(CONFOUNDED in section.notices for section in sections if section.title in "ab")
 
 

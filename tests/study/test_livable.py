@@ -8,7 +8,7 @@ from collections import Counter
 import pytest
 
 from animat.settings import SettingsError, validated
-from animat.study.livable import check_livable
+from animat.study.livable import MOST_DRAWN, check_livable
 from animat.study.plan import Plan
 from animat.study.study import Study
 from animat.world.arena import Arena
@@ -120,3 +120,17 @@ def test_each_world_is_drawn_once_for_each_reach(monkeypatch):
     assert drawn == {
         f"{world} {reach}": 1 for world in ("abundant", "scarce") for reach in (20.0, 30.0)
     }
+
+
+def test_of_very_many_worlds_not_all_are_drawn(monkeypatch):
+    plan = plan_of(
+        '[worlds.rich]\nlayout = "random"\ncounts = { TS = 1 }\n[world]\nlayout = "rich"\n'
+        f"[design.grid]\n"
+        f'"worlds.rich.seed" = {list(range(250))}'
+    )
+    drawn = []
+    setting = plan.setting
+    monkeypatch.setattr(plan, "setting", lambda place: drawn.append(place) or setting(place))
+    check_livable(plan)
+    assert drawn == list(range(0, 250, 3))
+    assert len(drawn) <= MOST_DRAWN

@@ -5,8 +5,10 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
+import animat
 from animat.life import life as life_module
 from animat.life.life import live
+from animat.life.recording import EVERY, Recording
 from animat.life.setting import LifeError
 from animat.mind.mind import Mind
 from animat.settings import SettingsError
@@ -20,9 +22,9 @@ def silent(task, done, total):
     pass
 
 
-def asked(mind=None, seed=2, index=1, steps=300_000, trace=None, figure=None, force=False):
+def asked(mind=None, seed=2, index=1, steps=None, trace=None, figure=None, force=False, **further):
     settings = LifeSettings(mind=mind or Mind())
-    return OneLife(settings, seed, index, steps, trace, figure, force)
+    return OneLife(settings, seed, index, steps, trace, figure, force, **further)
 
 
 def test_it_is_the_life_asked_for():
@@ -102,10 +104,10 @@ def test_the_story_of_a_learner_tells_what_it_learnt():
     assert len(lines) == 5 + 4
 
 
-@pytest.mark.parametrize("kind", ["trace", "figure"])
+@pytest.mark.parametrize("kind", ["trace", "figure", "record"])
 def test_a_file_that_cannot_be_written_is_refused_before_any_work(tmp_path, monkeypatch, kind):
-    monkeypatch.setattr(one_life, "live", lambda *_, **__: pytest.fail("it lived"))
-    end = {"trace": "parquet", "figure": "svg"}[kind]
+    monkeypatch.setattr(one_life, "birth", lambda *_, **__: pytest.fail("it was born"))
+    end = "svg" if kind == "figure" else "parquet"
     (tmp_path / "file").touch()
     (tmp_path / f"there.{end}").touch()
     (tmp_path / f"directory.{end}").mkdir()
@@ -159,3 +161,101 @@ def test_a_file_that_comes_to_nothing_leaves_the_old_one(tmp_path, monkeypatch, 
 def test_what_cannot_be_lived_is_refused(changes, why):
     with pytest.raises(LifeError, match=why):
         live_one(asked(**changes), silent)
+
+
+def test_the_recording_written_is_of_the_life(tmp_path):
+    told = []
+    path = tmp_path / "a.parquet"
+    learner = Mind(agent="LEARNING")
+    life = live_one(asked(learner, steps=2_500, record=path), lambda *each: told.append(each))
+    alone = live(learner, World.abundant(), seed=2, life=1, steps=2_500, record="all")
+    assert life.summary == alone.summary
+    recording = Recording.load(path)
+    assert alone.trace is not None
+    assert recording.trace.to_pylist() == alone.trace.to_pylist()
+    assert recording.head.every == EVERY
+    assert recording.head.steps == 2_500
+    assert recording.verify() is None
+    assert sum(done for _, done, _ in told) == 2_500
+    assert {"command", "made", "versions"} <= recording.head.made.keys()
+    live_one(asked(learner, steps=50, record=path, every=9, force=True), silent)
+    assert Recording.load(path).head.every == 9
+
+
+def test_a_recorded_life_goes_on(tmp_path):
+    old, new, trace = (tmp_path / f"{name}.parquet" for name in ("old", "new", "trace"))
+    learner = Mind(agent="LEARNING")
+    live_one(asked(learner, steps=600, record=old, every=70), silent)
+    told = []
+    # What the recording says counts, whatever else is asked.
+    life = live_one(
+        asked(seed=9, index=9, steps=900, source=old, at=333, record=new, trace=trace),
+        lambda *each: told.append(each),
+    )
+    whole = live(learner, World.abundant(), seed=2, life=1, steps=900, record="all")
+    assert life.summary == whole.summary
+    assert whole.trace is not None
+    assert pq.read_table(trace).to_pylist() == whole.trace.slice(333).to_pylist()
+    assert Recording.load(new).trace.to_pylist() == whole.trace.slice(333).to_pylist()
+    assert sum(done for _, done, _ in told) == 900 - 333
+    assert {total for *_, total in told} == {900 - 333}
+
+    assert live_one(asked(source=old, steps=900), silent).summary == whole.summary
+    assert live_one(asked(source=old, at=0), silent).lifespan == 600
+
+
+def test_the_figure_of_a_life_that_goes_on_begins_there(tmp_path, monkeypatch):
+    live_one(asked(Mind(agent="LEARNING"), steps=300, record=tmp_path / "a.parquet"), silent)
+    drawn = []
+    figure = life_module.Life.figure
+    monkeypatch.setattr(life_module.Life, "figure", lambda self: drawn.append(self) or figure(self))
+    live_one(asked(source=tmp_path / "a.parquet", at=120, figure=tmp_path / "a.svg"), silent)
+    assert drawn[0].trace["step"].to_pylist() == list(range(120, 300))
+
+
+def test_where_a_life_cannot_go_on_is_told(tmp_path):
+    path = tmp_path / "a.parquet"
+    mortal = Mind(variables={"stamina": {"start": 0.97}})
+    end = live_one(asked(mortal, record=path), silent).lifespan
+    for further, why in {
+        ("at", end): f"the life ended at step {end}; go on from before, --at",
+        ("at", None): f"the life ended at step {end}",
+        ("at", end + 1): f"step {end + 1} is not recorded, only 0 to {end} are",
+        ("at", -1): "step -1 is not recorded",
+    }.items():
+        with pytest.raises(SettingsError, match=why):
+            live_one(asked(source=path, **dict([further])), silent)
+    for steps in (-1, 0, 9, 10):
+        with pytest.raises(LifeError, match=f"steps = {steps}: the life has lived 10 steps"):
+            live_one(asked(source=path, at=10, steps=steps), silent)
+    with pytest.raises(SettingsError, match="no such file"):
+        live_one(asked(source=tmp_path / "none.parquet"), silent)
+
+
+def test_one_file_cannot_be_both_trace_and_recording(tmp_path):
+    path = tmp_path / "a.parquet"
+    with pytest.raises(SettingsError, match="is to be both trace and recording; give two names"):
+        live_one(asked(trace=path, record=tmp_path / "." / "a.parquet"), silent)
+
+
+def test_a_life_is_recorded_from_python(tmp_path):
+    world = World.abundant()
+    mind = Mind(agent="LEARNING")
+    told = []
+    path = tmp_path / "a.parquet"
+    life = animat.record(
+        mind, world, str(path), seed=3, life=4, steps=700, every=80, progress=told.append
+    )
+    assert life.summary == live(mind, world, seed=3, life=4, steps=700).summary
+    assert sum(told) == 700
+    recording = animat.Recording.load(str(path))
+    assert recording.verify() is None
+    later = recording.at(350).live(steps=900, record="last:20")
+    whole = live(mind, world, seed=3, life=4, steps=900, record="last:20")
+    assert later.summary == whole.summary
+    assert later.trace is not None
+    assert whole.trace is not None
+    assert later.trace.to_pylist() == whole.trace.to_pylist()
+    assert recording.at(350).live(steps=360, record="last:20").trace.num_rows == 10
+    with pytest.raises(LifeError, match="steps = 0"):
+        animat.record(mind, world, path, steps=0)

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from animat.settings import SettingsError
-from animat.study import output
+from animat.study import lock, output
+from animat.study.lock import HeldError
 from animat.study.output import HOW_MADE, fresh_directory
 
 
@@ -34,10 +35,10 @@ def test_a_directory_takes_its_name_once_it_is_whole(tmp_path):
     assert names(out) == ["a"]
 
 
-def test_missing_parents_are_made_but_only_at_the_end(tmp_path):
+def test_missing_parents_are_made_and_not_left_empty(tmp_path):
     out = tmp_path / "one" / "two" / "out"
-    with pytest.raises(ZeroDivisionError):
-        written(out, then=lambda: raises(ZeroDivisionError))
+    with pytest.raises(ZeroDivisionError), fresh_directory(out, force=False):
+        raise ZeroDivisionError
     assert names(tmp_path) == []
     written(out)
     assert (out / "a").read_text() == "new"
@@ -59,7 +60,7 @@ def test_an_empty_directory_is_filled(tmp_path):
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, ZeroDivisionError, OSError(28, "full")])
 @pytest.mark.parametrize("force", [False, True])
-def test_a_failure_leaves_everything_as_it_was(tmp_path, error, force):
+def test_a_failure_leaves_what_was_there_and_keeps_what_was_done(tmp_path, error, force):
     out = tmp_path / "out"
     if force:
         written(out, "old")
@@ -67,9 +68,22 @@ def test_a_failure_leaves_everything_as_it_was(tmp_path, error, force):
     expected = SettingsError if isinstance(error, OSError) else error
     with pytest.raises(expected):
         written(out, force=force, then=lambda: raises(error))
-    assert names(tmp_path) == before
+    assert names(tmp_path) == [".out.partial", *before]
     if force:
         assert (out / "a").read_text() == "old"
+    with fresh_directory(out, force=force) as directory:
+        assert (directory / "a").read_text() == "new"
+    assert names(tmp_path) == ["out"]
+    assert names(out) == ["a", HOW_MADE]
+
+
+def test_two_that_fill_the_same_are_told_of_each_other(tmp_path, monkeypatch):
+    monkeypatch.setattr(lock, "PATIENCE", 0.01)
+    out = tmp_path / "out"
+    with pytest.raises(HeldError, match="is held by process"):
+        written(out, then=lambda: written(out))
+    written(out)
+    assert names(out) == ["a", HOW_MADE]
 
 
 def test_an_earlier_result_is_replaced_only_when_asked(tmp_path):
@@ -145,12 +159,17 @@ def test_a_link_stays_a_link(tmp_path):
     assert names(tmp_path / "disk") == ["there"]
 
 
-def test_the_last_of_two_at_once_does_not_replace_the_first(tmp_path):
+def test_what_came_there_meanwhile_is_not_replaced(tmp_path):
     out = tmp_path / "out"
+
+    def another():
+        out.mkdir()
+        (out / "a").write_text("first")
+
     with pytest.raises(SettingsError, match="cannot be written: Directory not empty"):
-        written(out, "second", then=lambda: written(out, "first"))
+        written(out, "second", then=another)
     assert (out / "a").read_text() == "first"
-    assert names(tmp_path) == ["out"]
+    assert names(tmp_path) == [".out.partial", "out"]
 
 
 def test_an_earlier_result_comes_back_if_the_new_one_cannot_take_its_place(tmp_path, monkeypatch):
@@ -159,7 +178,7 @@ def test_an_earlier_result_comes_back_if_the_new_one_cannot_take_its_place(tmp_p
     rename = Path.rename
 
     def fails(self, target):
-        if ".partial-" in self.name:
+        if ".partial" in self.name:
             raise OSError(5, "broken disk")
         return rename(self, target)
 
@@ -167,4 +186,4 @@ def test_an_earlier_result_comes_back_if_the_new_one_cannot_take_its_place(tmp_p
     with pytest.raises(SettingsError, match="cannot be written: broken disk"):
         written(out, force=True)
     assert (out / "a").read_text() == "old"
-    assert names(tmp_path) == ["out"]
+    assert names(tmp_path) == [".out.partial", "out"]

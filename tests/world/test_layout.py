@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from animat.world.arena import Arena
 from animat.world.layout import Layout, LayoutError, Placement
@@ -31,6 +32,19 @@ def test_sites_are_the_objects_then_the_spares():
     outlines = layout.outlines()
     np.testing.assert_array_equal(np.diff(outlines.first), [8, 3, 4])
     np.testing.assert_array_equal(outlines.centre, [(300, 300), (500, 300), (700, 300)])
+
+
+@pytest.mark.parametrize("angle", [1e6, -1e6, 12.0])
+def test_an_object_may_be_turned_however_often(angle):
+    outline = Layout(placements=(at("TS", 500.0, 500.0, angle),)).outlines().outline
+    sides = np.hypot(*(outline - np.roll(outline, 1, axis=0)).T)
+    np.testing.assert_allclose(sides, 45.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("angle", [np.nextafter(1e6, 2e6), -1e7, 1e308])
+def test_an_object_turned_beyond_what_has_a_sine_is_refused(angle):
+    with pytest.raises(ValidationError, match="angle"):
+        at("TS", 500.0, 500.0, float(angle))
 
 
 def test_an_empty_arena_is_a_layout():

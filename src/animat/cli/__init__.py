@@ -9,6 +9,7 @@ from animat.cli import export as export
 from animat.cli import life as life
 from animat.cli import multiverse as multiverse
 from animat.cli import new as new
+from animat.cli import replay as replay
 from animat.cli import report as report
 from animat.cli import reproduce as reproduce
 from animat.cli import run as run

@@ -10,9 +10,20 @@ import typer
 from animat.cli.app import app
 from animat.cli.options import Debug, Seed, SettingsFile, compiling_told, settings_of
 
+BY_RECORDING = {
+    "world": "--world",
+    "agent": "--agent",
+    "physiology": "--physiology",
+    "seed": "--seed",
+    "index": "--life",
+    "settings": "--settings",
+}
+"""Options that say what a recording says."""
+
 
 @app.command()
 def life(
+    context: typer.Context,
     world: Annotated[
         str | None, typer.Option(help="abundant (default), scarce, or a world's .toml file.")
     ] = None,
@@ -26,13 +37,29 @@ def life(
     index: Annotated[
         int, typer.Option("--life", help="Which life of the seed.", min=0, max=2**63 - 1)
     ] = 0,
-    steps: Annotated[int, typer.Option(help="The cap of the life, in steps.")] = 300_000,
+    steps: Annotated[
+        int | None, typer.Option(help="The cap of the life, in steps; 300,000 unless given.")
+    ] = None,
     settings: SettingsFile = None,
     trace: Annotated[
         Path | None, typer.Option(help="Write the trace to this .parquet file.")
     ] = None,
     figure: Annotated[
         Path | None, typer.Option(help="Draw the life to this .svg, .png or .pdf file.")
+    ] = None,
+    record: Annotated[
+        Path | None,
+        typer.Option(help="Write a recording to this .parquet file; see animat replay."),
+    ] = None,
+    every: Annotated[
+        int | None,
+        typer.Option(help="Keep the whole state in it every so many steps; 1,000 unless given."),
+    ] = None,
+    source: Annotated[
+        Path | None, typer.Option("--from", help="Go on with the life of this recording.")
+    ] = None,
+    at: Annotated[
+        int | None, typer.Option(help="From after so many steps; its last one unless given.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace these files.")] = False,
     debug: Debug = False,
@@ -41,9 +68,34 @@ def life(
     from animat.progress import telling
     from animat.study.one_life import OneLife, live_one, story
 
+    _check_together(context)
     chosen = settings_of(settings, physiology=physiology, agent=agent, world=world)
-    asked = OneLife(chosen, seed, index, steps, trace, figure, force)
+    asked = OneLife(chosen, seed, index, steps, trace, figure, force, record, every, source, at)
     with compiling_told(), telling() as tell:
         lived = live_one(asked, tell)
     for line in story(lived):
         print(line)
+
+
+def _check_together(context: typer.Context) -> None:
+    """Refuse options that do not go together."""
+    from animat.settings import SettingsError
+
+    given = {
+        name
+        for name in context.params
+        if getattr(context.get_parameter_source(name), "name", "") == "COMMANDLINE"
+    }
+    wrong = []
+    if "every" in given and "record" not in given:
+        wrong.append("--every is of a recording; give --record FILE with it")
+    if "at" in given and "source" not in given:
+        wrong.append("--at is a step of a recording; give --from FILE with it")
+    if "source" in given:
+        wrong += [
+            f"{option} cannot go with --from: the recording says it"
+            for name, option in BY_RECORDING.items()
+            if name in given
+        ]
+    if wrong:
+        raise SettingsError(*wrong)

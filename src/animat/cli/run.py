@@ -61,7 +61,7 @@ def _say_what(plan: Plan, directory: Path) -> None:
     cases, lives = len(plan.cases), plan.numbering["lives"].total
     print(f"{plan.study.name}: {cases:,} cases, {lives:,} lives; results in {directory}")
     for rule in excluded(plan.study):
-        print(f"left out, {rule.count:,} cases: {rule.why}")
+        print(f"left out: {rule.count:,} combinations: {rule.why}")
     sys.stdout.flush()
 
 

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from animat.life.digest import digest
 from animat.life.setting import LifeError, Setting, bring_together
 from animat.life.slices import live_recorded, live_slice
 from animat.life.summary import death_of, summary
 from animat.life.trace import row_dtype, table
+from animat.mind.functions import Functions
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
 from animat.robot.khepera import Khepera
+from animat.world.raster import Raster
 from animat.world.world import World
 
 if TYPE_CHECKING:
@@ -98,15 +101,57 @@ class Life:
         return draw_life(self)
 
 
+class Moment(NamedTuple):
+    """A life after one of its steps: everything its future depends on.
+
+    Its setting, seed and index, and, as the kernel takes them, its state (`states` [1]) and which
+    sites hold an object (`present` [1, S]).
+    """
+
+    setting: Setting
+    seed: int
+    index: int
+    states: NDArray[np.void]
+    present: NDArray[np.uint8]
+
+    @property
+    def state(self) -> np.record:
+        """The state, which changes as the life is lived on."""
+        return self.states[0]
+
+    @property
+    def step(self) -> int:
+        """Steps lived so far."""
+        return int(self.state.step)
+
+    @property
+    def digest(self) -> str:
+        """What the life is here, in 32 hexadecimal digits."""
+        return digest(self.state, self.present[0])
+
+    def copy(self) -> Moment:
+        """Return the same moment, of which a life can be lived on while this one stays."""
+        return self._replace(states=self.states.copy(), present=self.present.copy())
+
+    def live(self, steps: int, record: str | None = None, progress: Progress | None = None) -> Life:
+        """Live the life on from here, until it has lived `steps` steps in all, and return it.
+
+        Its trace begins here; this moment stays as it is. See `live`. Raises LifeError.
+        """
+        choice = TraceChoice.parse(record)
+        check(self.seed, self.index, steps)
+        return _live_on(self.copy(), steps, choice, progress)
+
+
 @dataclass(frozen=True)
-class Recording:
-    """What of a life to record: every `every`-th step, or only the `last` ones."""
+class TraceChoice:
+    """Which steps the trace of a life holds: every `every`-th, or only the `last` ones."""
 
     every: int = 1
     last: int | None = None
 
     @classmethod
-    def parse(cls, text: str | None) -> Recording | None:
+    def parse(cls, text: str | None) -> TraceChoice | None:
         """Read "all", "every:N", "last:N" or None. Raises LifeError."""
         if text is None:
             return None
@@ -140,58 +185,83 @@ def live(
     "every:N", "last:N" (steps) or None. Raises LifeError for what cannot be lived.
     """
     setting = bring_together(mind, world, robot)
-    recording = Recording.parse(record)
+    choice = TraceChoice.parse(record)
     check(seed, life, steps)
-    states, present = setting.begin(seed, np.array([life], np.uint64))
-    rows = [
-        table(part, mind, world)
-        for part in lived(setting, states, present, seed, life, steps, recording, progress)
-    ]
-    trace = pa.concat_tables(rows).unify_dictionaries() if recording else None
-    return Life(setting, seed, life, states[0], trace)
+    return _live_on(birth(setting, seed, life), steps, choice, progress)
+
+
+def birth(setting: Setting, seed: int, life: int) -> Moment:
+    """Return the beginning of a life. Raises LifeError where it has no room to start."""
+    return Moment(setting, seed, life, *setting.begin(seed, np.array([life], np.uint64)))
+
+
+def _live_on(
+    moment: Moment, steps: int, choice: TraceChoice | None, progress: Progress | None
+) -> Life:
+    mind, world = moment.setting.mind, moment.setting.world
+    rows = [table(part, mind, world) for part in lived(moment, steps, choice, progress)]
+    trace = pa.concat_tables(rows).unify_dictionaries() if choice else None
+    return Life(moment.setting, moment.seed, moment.index, moment.state, trace)
 
 
 def lived(
-    setting: Setting,
-    states: NDArray[np.void],
-    present: NDArray[np.uint8],
-    seed: int,
-    life: int,
-    steps: int,
-    recording: Recording | None,
-    progress: Progress | None = None,
+    moment: Moment, steps: int, choice: TraceChoice | None, progress: Progress | None = None
 ) -> Iterator[NDArray[np.void]]:
-    """Live the one life of `states` [1] on up to `steps`, and yield its rows as they come."""
+    """Live the life on up to `steps`, in place, and yield its rows as they come."""
     tell = progress or (lambda _: None)
-    rest = (
+    start = moment.step
+    ring = choice is not None and choice.last is not None
+    length = 0 if choice is None else choice.last or SLICE // 4
+    rows = np.zeros(length, row_dtype(moment.states.dtype))
+    while moment.step < steps and not moment.state.dead:
+        before = moment.step
+        until = min(before + SLICE, steps)
+        if choice is None:
+            live_unrecorded(moment, until)
+        else:
+            written = live_rows(moment, until, rows, choice.every, ring)
+            if not ring:
+                yield rows[:written].copy()
+        tell(moment.step - before)
+    if choice is not None and ring:
+        count = min(len(rows), moment.step - start)
+        yield rows[np.arange(moment.step - count, moment.step) % len(rows)]
+    elif choice is not None and moment.step == start:
+        yield rows[:0]
+
+
+def live_unrecorded(moment: Moment, until: int) -> None:
+    """Live the life on, in place, until it has lived `until` steps or is dead."""
+    live_slice(
+        moment.states, moment.present, np.array([moment.index], np.uint64), *_rest(moment), until
+    )
+
+
+def live_rows(
+    moment: Moment, until: int, rows: NDArray[np.void], every: int = 1, ring: bool = False
+) -> int:
+    """Live the life on, in place, and fill `rows` [N]; see `live_recorded`. Return how many."""
+    return live_recorded(
+        moment.state,
+        moment.present[0],
+        np.uint64(moment.index),
+        *_rest(moment),
+        until,
+        rows,
+        every,
+        ring,
+    )
+
+
+def _rest(moment: Moment) -> tuple[np.record, np.record, Raster, Functions, np.uint64]:
+    setting = moment.setting
+    return (
         setting.mind_parameters,
         setting.robot_parameters,
         setting.raster,
         setting.functions,
-        np.uint64(seed),
+        np.uint64(moment.seed),
     )
-    state = states[0]
-    ring = recording is not None and recording.last is not None
-    rows = np.zeros(
-        0 if recording is None else recording.last or SLICE // 4, row_dtype(states.dtype)
-    )
-    while state.step < steps and not state.dead:
-        before = int(state.step)
-        until = min(before + SLICE, steps)
-        if recording is None:
-            live_slice(states, present, np.array([life], np.uint64), *rest, until)
-        else:
-            written = live_recorded(
-                state, present[0], np.uint64(life), *rest, until, rows, recording.every, ring
-            )
-            if not ring:
-                yield rows[:written].copy()
-        tell(int(state.step) - before)
-    if recording is not None and ring:
-        count = min(len(rows), int(state.step))
-        yield rows[np.arange(int(state.step) - count, int(state.step)) % len(rows)]
-    elif recording is not None and state.step == 0:
-        yield rows[:0]
 
 
 def check(seed: int, life: int, steps: int) -> None:

@@ -37,6 +37,10 @@ SLICE = 10_000
 """Steps of each life of a chunk between two looks at the outside."""
 
 
+TURNS = 8
+"""How many times a thread takes a chunk at least, of lives enough."""
+
+
 @dataclass(frozen=True)
 class Lives:
     """Lives of one setting and seed: `table` has a row for each (columns in docs/lives.md)."""
@@ -105,7 +109,7 @@ def live_chunks(
     threads = threads or os.cpu_count() or 1
     stop = Event()
 
-    size = chunk_size(steps)
+    size = chunk_size(steps, lives, threads)
 
     def chunk(start: int) -> dict[str, pa.Array]:
         indices = np.arange(start, min(start + size, first + lives), dtype=np.uint64)
@@ -127,9 +131,13 @@ def live_chunks(
             stop.set()
 
 
-def chunk_size(steps: int) -> int:
-    """Return how many lives of up to `steps` steps a thread takes at a time."""
-    return min(max(STEPS_OF_A_CHUNK // steps, CHUNK), LARGEST_CHUNK)
+def chunk_size(steps: int, lives: int, threads: int) -> int:
+    """Return how many lives of up to `steps` steps a thread takes at a time.
+
+    Few enough that every thread takes several times, and none waits long for the last.
+    """
+    share = -(-lives // (TURNS * threads))
+    return max(min(STEPS_OF_A_CHUNK // steps, LARGEST_CHUNK, share), CHUNK)
 
 
 def live_states(

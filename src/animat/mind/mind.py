@@ -210,13 +210,13 @@ class Mind(Settings):
             raise ValueError("\n".join(problems))
         return resolved
 
-    def functions(self) -> Functions:
-        """Return the user's own functions, compiled. Raises FunctionError."""
-        chosen: dict[str, Any] = {}
-        for law in set(_own_laws(self.resolved_variables()).values()):
-            chosen["law"] = resolve("law", law)
+    def own_functions(self) -> dict[str, Function]:
+        """Return the user's own functions as they were given, by their role in `SIGNATURES`."""
+        own: dict[str, Function] = {}
+        for law in _own_laws(self.resolved_variables()).values():
+            own["law"] = law
         if self.drive_function is not None:
-            chosen["drives"] = resolve("drives", self.drive_function)
+            own["drives"] = self.drive_function
         for role, value, known in (
             ("selector", self.selector, SELECTORS),
             ("estimator", self.learning.estimator, ESTIMATORS),
@@ -224,8 +224,13 @@ class Mind(Settings):
             ("wander", self.wander, WANDERERS),
         ):
             if value is not None and value not in known:
-                chosen[role] = resolve(role, value)
-        return BUILT_IN._replace(**chosen)
+                own[role] = value
+        return own
+
+    def functions(self) -> Functions:
+        """Return the user's own functions, compiled. Raises FunctionError."""
+        own = self.own_functions()
+        return BUILT_IN._replace(**{role: resolve(role, own[role]) for role in own})
 
     def weight_count(self, feature_count: int) -> int:
         """Return the number of weights of one of its networks."""

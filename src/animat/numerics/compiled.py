@@ -59,24 +59,25 @@ def kernel(function: Function) -> Function:
     if dispatcher is not function:
         kept = dispatcher._cache._cache_file
         kept._source_stamp = engine_stamp()
-        kept._load_index = _or_nothing(kept._load_index)
+        kept._load_index = _or(dict, kept._load_index)
+        kept._load_data = _or(lambda: None, kept._load_data)
     return _identified(dispatcher, function)
 
 
-def _or_nothing(load_index: Callable[[], dict[Any, Any]]) -> Callable[[], dict[Any, Any]]:
-    """Let a list of what is kept count as empty where it cannot be read.
+def _or(otherwise: Callable[[], Any], load: Callable[..., Any]) -> Callable[..., Any]:
+    """Let what is kept count as missing where it cannot be read, so that it is compiled anew.
 
-    It names the users' functions its kernels were compiled with; one that was renamed or deleted
-    since must not stop every other kernel.
+    It may be torn; and it names the users' functions it was compiled with, and their modules. One
+    that was renamed or deleted since, or could be imported only there, must not stop a kernel.
     """
 
-    def load() -> dict[Any, Any]:
+    def load_or_not(*names: str) -> Any:
         try:
-            return load_index()
+            return load(*names)
         except Exception:  # unpickling raises whatever the user's file does
-            return {}
+            return otherwise()
 
-    return load
+    return load_or_not
 
 
 @cache
@@ -93,13 +94,13 @@ def engine_stamp() -> str:
 def _identified(dispatcher: Any, function: Callable[..., Any]) -> Any:
     """Give a compiled function an identity that a later process finds again."""
     if dispatcher is not function:
-        known = identity(function)
-        if known is not None:
-            dispatcher._set_uuid(known)
+        identity = _identity(function)
+        if identity is not None:
+            dispatcher._set_uuid(identity)
     return dispatcher
 
 
-def identity(function: Callable[..., Any]) -> str | None:
+def _identity(function: Callable[..., Any]) -> str | None:
     """Return a text that is equal only for functions that compute the same, or None.
 
     It covers the whole source file, for what the function calls there, the compiled functions that

@@ -16,6 +16,7 @@ from animat.report.blocks import (
     trend_picture,
 )
 from animat.report.estimates import LEVEL
+from animat.report.figures.style import shortened
 from animat.report.findings import Findings
 from animat.report.levels import Level
 from animat.report.margins import Margin
@@ -164,14 +165,19 @@ def longest_to_shortest(margin: Margin) -> float:
 def _factor_in_short(margin: Margin, corrected: float) -> str:
     longest = max(margin.levels, key=lambda one: one.summary.mean.value)
     shortest = min(margin.levels, key=lambda one: one.summary.mean.value)
+    low, high = shortest.summary.mean.value, longest.summary.mean.value
     ends = (
-        f"mean lifespans from {shortest.summary.mean.value:,.0f} ({shortest.label})"
-        f" to {longest.summary.mean.value:,.0f} steps ({longest.label})"
+        f"mean lifespans from {low:,.0f} ({shortened(shortest.label)}) to {high:,.0f} steps"
+        f" ({shortened(longest.label)})"
+        if low < high
+        else f"mean lifespan {low:,.0f} steps at every level"
     )
     shown = "" if corrected <= 1 - LEVEL else "no difference shown; "
     p = p_value(corrected)
     said = p if p.startswith("<") else f"= {p}"
-    return f"{margin.factor.name}: {shown}{ends}, {margin.test.name} p {said} after correction."
+    besides = ", confounded with other factors" if margin.confounded else ""
+    test = f"{margin.test.name} p {said} after correction{besides}"
+    return f"{margin.factor.name}: {shown}{ends}, {test}."
 
 
 def _how_compared(margin: Margin, *, alone: bool) -> str:
@@ -194,6 +200,8 @@ def _tested(margin: Margin) -> str:
     test = margin.test
     if test.name == "Spearman":
         return f"{test.name}, rho = {test.statistic:.2f}"
+    if test.freedom == 0:
+        return f"{test.name}, nothing to compare"
     return f"{test.name}, chi² = {test.statistic:,.1f}, {test.freedom} d.f."
 
 

@@ -139,7 +139,7 @@ class Khepera(Settings):
                 f"{self.ring_radius / 2:g} mm, noise included"
             )
         for number, sensor in enumerate(self.sensors):
-            if math.hypot(sensor.x, sensor.y) > self.ring_radius:
+            if math.sqrt(sensor.x * sensor.x + sensor.y * sensor.y) > self.ring_radius:
                 problems.append(
                     f"sensor {number} at ({sensor.x:g}, {sensor.y:g}) mm lies outside the "
                     f"collision ring: it must be at most {self.ring_radius:g} mm from the centre"
@@ -170,7 +170,8 @@ class Khepera(Settings):
         robot["sensor_y"] = [sensor.y for sensor in self.sensors]
         looking = np.array([sensor.direction for sensor in self.sensors])
         turn_to(looking, robot["sensor_sine"], robot["sensor_cosine"])
-        turn_to(45.0 * np.arange(RING_POINTS), robot["ring_y"], robot["ring_x"])
+        around = np.array([45.0 * point for point in range(RING_POINTS)])
+        turn_to(around, robot["ring_y"], robot["ring_x"])
         robot["ring_x"] *= self.ring_radius
         robot["ring_y"] *= self.ring_radius
         return cast(np.record, robot[()])

@@ -27,12 +27,10 @@ from animat.world.world import World
 NAMES = ("case", "world", "agent", "seed", "life", "identity", "robot")
 """The columns that tell which life a row is of; a life that failed has them too."""
 
-WEIGHTS = pa.list_(pa.float64())
-
 
 @lru_cache(maxsize=4)
 def schema(plan: Plan, kind: Kind) -> pa.Schema:
-    """Return the columns of a kind of parts: lives in docs/tables.md, teachers likewise."""
+    """Return the columns of a kind of parts; docs/tables.md describes them."""
     known: dict[object, pa.Schema] = {}
     for place, (mind, world) in enumerate(_minds_and_worlds(plan, kind)):
         types = [one.name for one in world.types]
@@ -71,15 +69,17 @@ def rows(
 
     A column that is missing is null.
     """
-    failed = np.array([error is not None for error in errors], bool)
-    there = pa.array(np.arange(len(errors)), mask=failed)
-    columns = {**columns, "error": pa.array(errors, pa.string())}
+    count = len(errors)
+    there = None
+    if any(errors):
+        there = pa.array(np.arange(count), mask=np.array([bool(each) for each in errors], bool))
+        columns = {**columns, "error": pa.array(errors, pa.string())}
     filled = []
     for column in wanted:
         values = columns.get(column.name)
         if values is None:
-            values = pa.nulls(len(errors), column.type)
-        elif failed.any() and column.name not in {*NAMES, "error"}:
+            values = pa.nulls(count, column.type)
+        elif there is not None and column.name not in {*NAMES, "error"}:
             values = values.take(there)
         filled.append(values)
     return pa.table(filled, schema=wanted)

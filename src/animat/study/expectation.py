@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from animat.life.life import Recording, lived
+from animat.life.life import Moment, TraceChoice, lived
 from animat.life.lives import CHUNK, live_chunks
 from animat.life.setting import Setting, bring_together
 from animat.life.trace import table
@@ -146,15 +146,16 @@ def _tables(plan: Plan, lives: pa.Table) -> float:
 def _traces(plan: Plan, lifespan: Range) -> Range:
     """Return the room of the traces of lives of so many steps."""
     record = plan.study.record
-    recording = Recording.parse(record.what) if record is not None else None
-    if record is None or recording is None:
+    choice = TraceChoice.parse(record.what) if record is not None else None
+    if record is None or choice is None:
         return Range(0.0, 0.0)
-    rows = lifespan * (1.0 / recording.every)
-    if recording.last is not None:
-        rows = Range(*(min(recording.last, steps) for steps in lifespan))
+    rows = lifespan * (1.0 / choice.every)
+    if choice.last is not None:
+        rows = Range(*(min(choice.last, steps) for steps in lifespan))
     case, setting = plan.lived[0], _setting(plan, 0)
     states, present = setting.begin(case.seed, np.array([case.first], np.uint64))
-    parts = lived(setting, states, present, case.seed, case.first, TRACED, Recording())
+    birth = Moment(setting, case.seed, case.first, states, present)
+    parts = lived(birth, TRACED, TraceChoice())
     trace = pa.concat_tables(table(part, setting.mind, setting.world) for part in parts)
     return rows * (record.lives * len(plan.lived) * _bytes_of_a_row(trace.unify_dictionaries()))
 

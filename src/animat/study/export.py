@@ -111,7 +111,8 @@ def _values(column: pa.ChunkedArray) -> NDArray[Any]:
     if pa.types.is_list(kind):
         lists = column.to_pylist()
         width = max((len(each) for each in lists if each), default=0)
-        return np.array([each or [np.nan] * width for each in lists], float).reshape(-1, width)
+        filled = [each or [np.nan] * width for each in lists]
+        return np.array(filled, float).reshape(len(filled), width)
     if pa.types.is_string(kind) or pa.types.is_dictionary(kind):
         return np.array([text or "" for text in column.to_pylist()], object)
     if pa.types.is_boolean(kind) and not column.null_count:

@@ -22,9 +22,10 @@ from animat.mind.agents import ACCEPT_ALL, ASK_NETWORKS, ASK_TRUTH
 from animat.mind.functions import BUILT_IN, Functions
 from animat.mind.mind import Mind
 from animat.mind.selection import RANDOM, WINNER_TAKE_ALL
-from animat.numerics.compiled import identity as identity_of_function
+from animat.numerics.fingerprint import fingerprint
 from animat.robot.khepera import Khepera
-from animat.world.files import world_content
+from animat.settings import SettingsError
+from animat.world.files import world_file
 from animat.world.world import World
 
 LEARNING = ("learning_rate", "learning_cycles", "learning_threshold", "learner", "biases")
@@ -52,7 +53,7 @@ class Lived(NamedTuple):
 def identity(lived: Lived, *, traced: bool = False) -> str:
     """Return the identity of lives. In a trace (`traced`) stands also what decides nothing.
 
-    Raises LifeError for what does not fit together, and for a function that has no identity.
+    Raises LifeError for what does not fit together, and for a function nobody can tell apart.
     """
     digest = hashlib.sha256()
     for part in _parts(lived, traced):
@@ -85,14 +86,10 @@ def _parts(lived: Lived, traced: bool) -> Iterator[bytes]:
     for role, built_in in BUILT_IN._asdict().items():
         own = getattr(lived.functions, role)
         if own is not built_in and role not in unread:
-            plain = getattr(own, "py_func", own)
-            known = identity_of_function(plain)
-            if known is None:
-                raise LifeError(
-                    f"{role}: {plain.__name__} takes more from the function around it than numbers"
-                    " and texts, so that nobody can tell whether it has changed"
-                )
-            yield f"{role} {known}".encode()
+            try:
+                yield f"{role} {fingerprint(own)}".encode()
+            except SettingsError as error:
+                raise LifeError(f"{role}: {error}") from None
     if networks:
         untaught = [bool(mind.learning.biases), mind.learning.hidden_units]
         yield lived.taught.encode() if lived.taught else json.dumps(untaught).encode()
@@ -100,7 +97,7 @@ def _parts(lived: Lived, traced: bool) -> Iterator[bytes]:
 
 @lru_cache(maxsize=64)
 def _told_of_world(world: World) -> bytes:
-    return json.dumps(world_content(world.name, world.layout, world.resolution)).encode()
+    return world_file(world.name, world.layout, world.resolution).model_dump_json().encode()
 
 
 def _fields(record: np.record, unread: set[str]) -> Iterator[bytes]:

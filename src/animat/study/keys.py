@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import cache, lru_cache
 from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel
@@ -27,6 +28,7 @@ class UnknownKeyError(ValueError):
     """A key that no setting has."""
 
 
+@lru_cache(maxsize=4096)
 def read_key(text: str) -> Key:
     """Return the parts of a dotted key. Raises UnknownKeyError for what is written like none."""
     if not re.fullmatch(rf"({_PART})(\.({_PART}))*", text):
@@ -39,11 +41,12 @@ def put(data: dict[str, Any], model: type[BaseModel], key: Key, value: Any) -> N
 
     Raises UnknownKeyError for a key that no setting has, with the nearest that one has.
     """
-    here: Any = model
     node = data
-    for depth, part in enumerate(key):
-        here = table_of(here)
-        if part not in (known := _known(here, node, key, depth)):
+    tables = _tables(model, key)
+    for depth, (part, table) in enumerate(zip(key, tables, strict=True)):
+        if table is None or not isinstance(node, dict):
+            raise UnknownKeyError(f"{written(key[:depth])} is no table, so it has no keys")
+        if part not in (known := _known(table, node, key, depth)):
             close = nearest(written(key), known_keys(data, model))
             raise UnknownKeyError(
                 f"unknown key{close if 'did you mean' in close else nearest(part, known)}"
@@ -52,11 +55,19 @@ def put(data: dict[str, Any], model: type[BaseModel], key: Key, value: Any) -> N
             node[part] = value
             return
         if part not in node:
-            node[part] = _default(here, part)
+            node[part] = _default(table, part)
         node = node[part]
-        here = inside(here, part)
-        if not isinstance(node, dict) or table_of(here) is None:
-            raise UnknownKeyError(f"{written(key[: depth + 1])} is no table, so it has no keys")
+
+
+@lru_cache(maxsize=4096)
+def _tables(model: type[BaseModel], key: Key) -> tuple[Any, ...]:
+    """Return what each part of a key stands in, as the model has it; None for no table."""
+    here: Any = model
+    tables = []
+    for part in key:
+        tables.append(table_of(here))
+        here = inside(tables[-1], part)
+    return tuple(tables)
 
 
 def known_keys(data: dict[str, Any], model: type[BaseModel]) -> list[str]:
@@ -66,10 +77,7 @@ def known_keys(data: dict[str, Any], model: type[BaseModel]) -> list[str]:
 
 def annotation_of(model: type[BaseModel], key: Key) -> Any:
     """Return what a setting may be, as the model has it; None where no setting has the key."""
-    here: Any = model
-    for part in key:
-        here = inside(table_of(here), part)
-    return here
+    return inside(_tables(model, key)[-1], key[-1]) if key else model
 
 
 def table_of(annotation: Any) -> Any:
@@ -92,6 +100,7 @@ def _known(table: Any, node: dict[str, Any], key: Key, depth: int) -> list[str]:
     return [*entries, key[depth]] if may_be_new else entries
 
 
+@cache
 def fields(model: type[BaseModel]) -> list[str]:
     """Return the settings of a model that can be written down."""
     return [name for name, field in model.model_fields.items() if not field.exclude]

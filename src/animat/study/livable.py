@@ -1,10 +1,12 @@
-"""Whether a study can be lived, beyond what its plan knows: every world is drawn and entered.
+"""Whether a study can be lived, beyond what its plan knows: worlds are drawn and entered.
 
-That costs more than reading the study, so it is done where nothing has been lived yet.
+That costs more than reading the study, so it is done where nothing has been lived yet, and of very
+many worlds not with all.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -16,6 +18,9 @@ from animat.study.plan import Plan
 from animat.study.settings import WorldChoice
 from animat.study.telling import InCases, told
 
+MOST_DRAWN = 100
+"""Worlds that are drawn; of more, so many that are spread over the study."""
+
 
 def check_livable(plan: Plan) -> None:
     """Refuse worlds that cannot be drawn, and those in which no robot finds a place to start.
@@ -23,32 +28,37 @@ def check_livable(plan: Plan) -> None:
     Raises:
         SettingsError: with a line for every mistake, and the cases that share it.
     """
-    drawn: dict[str, tuple[str, ...]] = {}
-    refused: dict[str, InCases] = {}
-
-    def draw(case: Case, choice: WorldChoice, setting: Callable[[], Setting]) -> None:
-        """Draw what a case is lived in, once for all cases that are lived in the same."""
-        robot, reach = case.settings.robot, case.settings.mind.encounter_range
-        mark = f"{choice.model_dump_json()} {robot.model_dump_json()} {reach}"
-        if mark not in drawn:
-            drawn[mark] = _problems(setting, case.seed, case.first)
-        for line in drawn[mark]:
-            refused[line] = refused.get(line, InCases(0, case.factors, case.factors)).and_in(
-                case.factors
-            )
-
+    settings: dict[str, Callable[[], Setting]] = {}
+    lived_in: dict[str, list[Case]] = {}
     for place, case in enumerate(plan.lived):
-        draw(case, case.settings.world, lambda place=place: plan.setting(place))
+        mark = _mark(case, case.settings.world)
+        settings.setdefault(mark, lambda place=place: plan.setting(place))
+        lived_in.setdefault(mark, []).append(case)
     for place, each in enumerate(plan.classes):
-        draw(each.case, each.teacher.world, lambda place=place: plan.setting_of_class(place))
+        mark = _mark(each.case, each.teacher.world)
+        settings.setdefault(mark, lambda place=place: plan.setting_of_class(place))
+        lived_in.setdefault(mark, []).append(each.case)
+    refused: dict[str, InCases] = {}
+    for mark in list(settings)[:: math.ceil(len(settings) / MOST_DRAWN)]:
+        first = lived_in[mark][0]
+        for line in _problems(settings[mark], first):
+            for case in lived_in[mark]:
+                before = refused.get(line, InCases(0, case.factors, case.factors))
+                refused[line] = before.and_in(case.factors)
     if refused:
         lines = (one.told(line, len(plan.lived)) for line, one in refused.items())
         raise SettingsError(*told(lines))
 
 
-def _problems(setting: Callable[[], Setting], seed: int, first: int) -> tuple[str, ...]:
+def _mark(case: Case, choice: WorldChoice) -> str:
+    """Return what the drawing of a world, and where a robot may start in it, depend on."""
+    robot, reach = case.settings.robot, case.settings.mind.encounter_range
+    return f"{choice.model_dump_json()} {robot.model_dump_json()} {reach}"
+
+
+def _problems(setting: Callable[[], Setting], case: Case) -> tuple[str, ...]:
     try:
-        setting().begin(seed, np.array([first], np.uint64))
+        setting().begin(case.seed, np.array([case.first], np.uint64))
     except SettingsError as error:
         return error.problems
     except ValueError as error:

@@ -59,6 +59,11 @@ class Watched:
     curve: NDArray[np.float64] | None = None
     earlier: list[Snapshot] = field(default_factory=list)
 
+    @property
+    def failed(self) -> int:
+        """How many of them failed."""
+        return len(self.errors) - self.errors.count(None)
+
 
 @dataclass(frozen=True)
 class Company:
@@ -116,17 +121,18 @@ class Company:
                 break
             if self.back:
                 earlier.append((states.copy(), present.copy()))
-            acts = states["acts_by_behaviour"].copy()
+            acts = states["acts_by_behaviour"].copy() if self.curve else None
             live_on(self.setting, self.seed, lives, states, present, until)
             for n in np.flatnonzero(_not_finite(states)):
                 if errors[n] is None:
                     own = None if weights is None else weights[n : n + 1]
                     errors[n] = self._since_when(lives[n : n + 1], own, before, until)
                     states["dead"][n] = True  # so that it does not go on
-            if curve is not None:
+            if curve is not None and acts is not None:
                 _note_episodes(curve, acts, states, likelihoods(self.setting, states))
             before = until
-        states["dead"] &= [error is None for error in errors]
+        if any(errors):
+            states["dead"] &= [error is None for error in errors]
         return Watched(states, errors, curve, list(earlier))
 
     def _since_when(

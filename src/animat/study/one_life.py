@@ -1,4 +1,4 @@
-"""One life from the command line: lived, told in a few lines, its trace and figure written.
+"""One life from the command line: lived, told in a few lines, its recording, trace, figure written.
 
 A life lived again is the same life. So it is lived first to see how long it is, and again for its
 trace and for its figure, and memory does not grow with its length.
@@ -7,19 +7,25 @@ trace and for its figure, and memory does not grow with its length.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import numpy as np
 import pyarrow.parquet as pq
 
 from animat.files import check_writable, whole
-from animat.life.life import Life, Recording, check, live, lived
-from animat.life.setting import bring_together
+from animat.life.life import Life, Moment, Progress, TraceChoice, birth, check, live, lived
+from animat.life.recording import EVERY, Recording, write_recording
+from animat.life.setting import LifeError, bring_together
 from animat.life.trace import table
 from animat.mind.mind import Mind
 from animat.progress import Telling
+from animat.robot.khepera import Khepera
+from animat.settings import SettingsError
+from animat.study.provenance import provenance
 from animat.study.settings import LifeSettings
 from animat.world.world import World
+
+STEPS = 300_000
+"""The cap of a life."""
 
 LEARNING_STEPS = 300_000
 """How long AF has learnt before it lives, as in Experiment 1."""
@@ -31,48 +37,82 @@ DRAWINGS = (".svg", ".png", ".pdf")
 
 
 class OneLife(NamedTuple):
-    """Which life to live, and what to write of it."""
+    """Which life to live, and what to write of it.
+
+    It is born with the settings, seed and index, or, if there is a `source`, taken from that
+    recording where it has lived `at` steps, all that were recorded if None. It is lived up to
+    `steps`: 300,000 if None, or what the recording says. `every` is EVERY if None.
+    """
 
     settings: LifeSettings
     seed: int
     index: int
-    steps: int
+    steps: int | None
     trace: Path | None
     figure: Path | None
     force: bool
+    record: Path | None = None
+    every: int | None = None
+    source: Path | None = None
+    at: int | None = None
 
 
 def live_one(asked: OneLife, tell: Telling) -> Life:
-    """Live a life, write its trace and figure where asked, and return it without a trace.
+    """Live a life, write its files where asked, and return it without a trace.
 
     An AF without networks learns first, as in Experiment 1. Raises SettingsError for what cannot
     be lived or written.
     """
-    check(asked.seed, asked.index, asked.steps)
-    if asked.trace:
-        check_writable(asked.trace, (".parquet",), force=asked.force)
-    if asked.figure:
-        check_writable(asked.figure, DRAWINGS, force=asked.force)
-    world = asked.settings.world.world()
-    mind = asked.settings.mind
-    if mind.agent == "AF" and mind.networks is None:
-        mind = _taught(asked, mind, world, tell)
-    life = _live(
-        asked,
-        mind,
-        world,
-        steps=asked.steps,
-        progress=lambda steps: tell("Life, steps", steps, asked.steps),
-    )
+    _check_files(asked)
+    moment, steps = _born(asked, tell) if asked.source is None else _recorded(asked.source, asked)
+
+    def progress(more: int) -> None:
+        tell("Life, steps", more, steps - moment.step)
+
+    if asked.record:
+        life = write_recording(
+            asked.record,
+            moment,
+            steps=steps,
+            every=EVERY if asked.every is None else asked.every,
+            made=provenance(),
+            progress=progress,
+        )
+    else:
+        life = moment.live(steps, progress=progress)
     if asked.trace:
         with whole(asked.trace) as partial:
-            _write_trace(life, partial)
+            _write_trace(moment.copy(), life.lifespan, partial)
     if asked.figure:
-        every = max(1, life.lifespan // FIGURE_ROWS)
-        drawn = _live(asked, mind, world, steps=asked.steps, record=f"every:{every}").figure()
+        every = max(1, (life.lifespan - moment.step) // FIGURE_ROWS)
+        drawn = moment.live(steps, record=f"every:{every}").figure()
         with whole(asked.figure) as partial:
             drawn.savefig(partial, format=asked.figure.suffix[1:].lower())
     return life
+
+
+def record(
+    mind: Mind,
+    world: World,
+    path: str | Path,
+    *,
+    robot: Khepera | None = None,
+    seed: int = 0,
+    life: int = 0,
+    steps: int = 300_000,
+    every: int = EVERY,
+    progress: Progress | None = None,
+) -> Life:
+    """Live one life as `live` does, write its recording to `path`, and return it without a trace.
+
+    Every `every` steps the whole state is kept. A file that was there is replaced, when the new
+    one is whole. Raises SettingsError for what cannot be lived, recorded or written.
+    """
+    check(seed, life, steps)
+    moment = birth(bring_together(mind, world, robot), seed, life)
+    return write_recording(
+        Path(path), moment, steps=steps, every=every, made=provenance(), progress=progress
+    )
 
 
 def story(life: Life) -> list[str]:
@@ -110,31 +150,60 @@ def story(life: Life) -> list[str]:
     return lines
 
 
-def _live(asked: OneLife, mind: Mind, world: World, **further: Any) -> Life:
-    """Live the life asked for, with this mind in this world."""
-    robot, seed, index = asked.settings.robot, asked.seed, asked.index
-    return live(mind, world, robot=robot, seed=seed, life=index, **further)
+def _born(asked: OneLife, tell: Telling) -> tuple[Moment, int]:
+    """Return the beginning of a life, and up to which step it is to be lived."""
+    steps = STEPS if asked.steps is None else asked.steps
+    check(asked.seed, asked.index, steps)
+    settings = asked.settings
+    world, mind = settings.world.world(), settings.mind
+    if mind.agent == "AF" and mind.networks is None:
+        learnt = live(
+            mind.model_copy(update={"agent": "LEARNING"}),
+            world,
+            robot=settings.robot,
+            seed=asked.seed,
+            life=asked.index,
+            steps=LEARNING_STEPS,
+            progress=lambda more: tell("Learning first, steps", more, LEARNING_STEPS),
+        )
+        mind = mind.model_copy(update={"networks": learnt.networks})
+    return birth(bring_together(mind, world, settings.robot), asked.seed, asked.index), steps
 
 
-def _taught(asked: OneLife, mind: Mind, world: World, tell: Telling) -> Mind:
-    learner = mind.model_copy(update={"agent": "LEARNING"})
-    learnt = _live(
-        asked,
-        learner,
-        world,
-        steps=LEARNING_STEPS,
-        progress=lambda steps: tell("Learning first, steps", steps, LEARNING_STEPS),
-    )
-    return mind.model_copy(update={"networks": learnt.networks})
+def _recorded(source: Path, asked: OneLife) -> tuple[Moment, int]:
+    """Return the moment a recorded life is to go on from, and up to which step."""
+    recording = Recording.load(source)
+    head = recording.head
+    steps = head.steps if asked.steps is None else asked.steps
+    moment = recording.at(head.last if asked.at is None else asked.at)
+    if moment.state.dead:
+        raise LifeError(f"{source}: the life ended at step {moment.step}; go on from before, --at")
+    if steps <= moment.step:
+        raise LifeError(
+            f"steps = {steps}: the life has lived {moment.step} steps already; give more"
+        )
+    return moment, steps
 
 
-def _write_trace(life: Life, path: Path) -> None:
-    """Live the life again and write a row for every step, a part at a time."""
-    setting = bring_together(life.mind, life.world, life.setting.robot)
-    states, present = setting.begin(life.seed, np.array([life.index], np.uint64))
-    parts = lived(setting, states, present, life.seed, life.index, life.lifespan, Recording())
-    first = table(next(parts), life.mind, life.world)
+def _write_trace(moment: Moment, until: int, path: Path) -> None:
+    """Live a life on, in place, and write a row for every step, a part at a time."""
+    mind, world = moment.setting.mind, moment.setting.world
+    parts = lived(moment, until, TraceChoice())
+    first = table(next(parts), mind, world)
     with pq.ParquetWriter(path, first.schema) as writer:
         writer.write_table(first)
         for part in parts:
-            writer.write_table(table(part, life.mind, life.world))
+            writer.write_table(table(part, mind, world))
+
+
+def _check_files(asked: OneLife) -> None:
+    """Refuse, before any work, files that could not be written at its end."""
+    for path, suffixes in (
+        (asked.trace, (".parquet",)),
+        (asked.figure, DRAWINGS),
+        (asked.record, (".parquet",)),
+    ):
+        if path is not None:
+            check_writable(path, suffixes, force=asked.force)
+    if asked.record and asked.trace and asked.record.resolve() == asked.trace.resolve():
+        raise SettingsError(f"{asked.record}: is to be both trace and recording; give two names")

@@ -10,7 +10,6 @@ results tell something of every case.
 
 from __future__ import annotations
 
-import math
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 
@@ -36,6 +35,7 @@ class Order:
         self._teachers: deque[Part] = deque()
         self._missing: dict[int, set[Part]] = {}
         self._asked: set[Part] = set()
+        self._learnt: set[Part] = set()
         self._waiting: list[Part] = []
 
     def next(self) -> Part | None:
@@ -60,6 +60,8 @@ class Order:
 
     def done(self, part: Part) -> None:
         """Take note that a part is finished."""
+        if part.kind == "teachers":
+            self._learnt.add(part)
         for missing in self._missing.values():
             missing.discard(part)
 
@@ -69,7 +71,7 @@ class Order:
             if place in self._missing:
                 continue
             wanted = self._plan.parts_of_class(place)
-            missing = {one for one in wanted if not self._finished(one)}
+            missing = {one for one in wanted if not self._finished(one)} - self._learnt
             self._missing[place] = missing
             self._teachers += [one for one in wanted if one in missing - self._asked]
             self._asked |= missing
@@ -79,8 +81,12 @@ class Order:
 
 
 def _spread(count: int) -> Iterator[int]:
-    """Yield 0 to `count` - 1 so that the first n of them lie evenly, whatever n is."""
-    step = max(1, round(count * (math.sqrt(5.0) - 1.0) / 2.0))
-    while math.gcd(step, count) > 1:
-        step += 1
-    return ((n * step) % count for n in range(count))
+    """Yield 0 to `count` - 1 so that the first n of them lie evenly, whatever n is.
+
+    These are the numbers with their bits in reverse, van der Corput's sequence.
+    """
+    bits = (count - 1).bit_length()
+    for n in range(1 << bits):
+        place = int(f"{n:0{bits}b}"[::-1], 2)
+        if place < count:
+            yield place

@@ -40,7 +40,7 @@ class Pace(NamedTuple):
         return (to_learn + to_live * lives.steps / lives.rows) / speed
 
     def __str__(self) -> str:
-        """Return speed and time left in words."""
+        """Return the time left and the speed in words."""
         speed, left = self.speed(), self.left()
         told = "time left not known yet" if left is None else f"about {in_words(left)} left"
-        return told if speed is None else f"{speed / 1e6:.1f} million steps/s, {told}"
+        return told if speed is None else f"{told}, {speed / 1e6:.1f} million steps/s"

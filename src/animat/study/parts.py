@@ -18,7 +18,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from animat.life.engine import ENGINE
-from animat.life.life import Recording
+from animat.life.life import TraceChoice
 from animat.study.columns import joined, life_columns, long_table, rows, schema, teacher_columns
 from animat.study.living import EPISODES, Company, Watched
 from animat.study.numbering import Kind, Part, Piece
@@ -58,7 +58,7 @@ def live_part(text: str, part: Part, networks: Networks, stop: Event | None = No
     plan = plan_of(text)
     lived = live_pieces(plan, part.kind, plan.pieces(part), networks, stop)
     identity = part_identity(plan, part)
-    failed = sum(error is not None for one in lived for error in one.watched.errors)
+    failed = sum(one.watched.failed for one in lived)
     steps = sum(int(one.watched.states["step"].sum()) for one in lived)
     files = {}
     for path in file_names(plan, part):
@@ -140,8 +140,8 @@ def _live(plan: Plan, piece: Piece, networks: Networks, stop: Event | None) -> L
     case = plan.lived[piece.place]
     setting = plan.setting(piece.place)
     curve = "learning_curve" in plan.study.measures and setting.mind.nature.learns
-    recording = _recording(plan)
-    back = (recording.last or 0) if recording and _recorded(plan, piece) else 0
+    choice = _choice(plan)
+    back = (choice.last or 0) if choice and _recorded(plan, piece) else 0
     company = Company(setting, case.seed, case.steps, curve, back, stop)
     lives = np.arange(case.first + piece.start, case.first + piece.stop, dtype=np.uint64)
     place = plan.class_of(piece.place)
@@ -220,8 +220,8 @@ def _curves(plan: Plan, kind: Kind, lived: Iterable[Lived]) -> pa.Table:
 
 def _traces(plan: Plan, lived: Iterable[Lived]) -> tuple[Iterator[pa.Table], pa.Schema]:
     """Return the traces of the lives that are recorded, and their columns."""
-    recording = _recording(plan)
-    assert recording is not None
+    choice = _choice(plan)
+    assert choice is not None
     traced = [
         Traced(
             plan.lived[one.piece.place].number,
@@ -235,8 +235,8 @@ def _traces(plan: Plan, lived: Iterable[Lived]) -> tuple[Iterator[pa.Table], pa.
         if _recorded(plan, one.piece)
     ]
     wanted = pa.unify_schemas([one.schema() for one in traced])
-    return (table for one in traced for table in one.tables(recording, wanted)), wanted
+    return (table for one in traced for table in one.tables(choice, wanted)), wanted
 
 
-def _recording(plan: Plan) -> Recording | None:
-    return Recording.parse(plan.study.record.what) if plan.study.record else None
+def _choice(plan: Plan) -> TraceChoice | None:
+    return TraceChoice.parse(plan.study.record.what) if plan.study.record else None

@@ -30,6 +30,7 @@ from animat.study.tally import Tally
 if TYPE_CHECKING:
     import pandas as pd
 
+
 OF_A_CASE = ("identity", "same_as")
 """The columns of the table of cases that are no factors, but for its number."""
 

@@ -11,7 +11,7 @@ import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager, suppress
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from threading import Event
 from typing import NamedTuple
@@ -31,8 +31,11 @@ from animat.study.tally import Tally
 LOOK_EVERY = 0.2
 """Seconds between two looks for Ctrl-C while nothing is finished."""
 
-AHEAD = 2
-"""Parts handed out for each worker, so that it finds another when it has finished one."""
+AHEAD = 4
+"""Parts handed out for each worker, so that none waits while others are written."""
+
+NETWORKS_KEPT = 64
+"""Classes of robots whose networks are kept in memory."""
 
 TASKS: dict[Kind, str] = {"teachers": "Robots that learn", "lives": "Lives"}
 
@@ -103,6 +106,7 @@ class _Run:
             if (seal := store.finished(part)) is not None:
                 self.tally.add(part, seal.steps, seal.failed)
         self.order = Order(self.plan, self.tally.finished)
+        self.networks = lru_cache(NETWORKS_KEPT)(store.networks)
 
     def to_its_end(self) -> Outcome:
         """Live and write part after part."""
@@ -145,7 +149,7 @@ class _Run:
                 self._take(self.under_way.pop(future), future.result())
 
     def _hand_out(self, part: Part) -> None:
-        networks = {place: self.store.networks(place) for place in classes_needed(self.plan, part)}
+        networks = {place: self.networks(place) for place in classes_needed(self.plan, part)}
         live = partial(live_part, stop=self.workers.stop) if self.workers.stop else live_part
         future = self.workers.executor.submit(live, self.plan.text, part, networks)
         self.under_way[future] = part
@@ -177,5 +181,5 @@ class _Run:
             return
         seconds = 0.0 if self.clock is None else time.monotonic() - self.clock
         pace = Pace(self.tally, self.plan.steps_to_learn, self.measured, seconds)
-        cases = f"{self.tally.finished_cases:,} of {len(self.plan.cases):,} cases, "
-        self.tell(TASKS[kind], rows, total, (cases if kind == "lives" else "") + str(pace))
+        cases = f", {self.tally.finished_cases:,} of {len(self.plan.cases):,} cases"
+        self.tell(TASKS[kind], rows, total, str(pace) + (cases if kind == "lives" else ""))

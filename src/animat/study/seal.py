@@ -41,7 +41,9 @@ def sealed(
     file = io.BytesIO()
     digest = hashlib.sha256()
     rows = 0
-    with pq.ParquetWriter(file, schema, compression="zstd") as writer:
+    texts = [field.name for field in schema if pa.types.is_dictionary(field.type)]
+    how: dict[str, Any] = {"compression": "zstd", "compression_level": 1, "use_dictionary": texts}
+    with pq.ParquetWriter(file, schema, **how) as writer:
         for table in tables:
             writer.write_table(table)
             digest.update(content(table).encode())
@@ -56,17 +58,20 @@ def seal_of(path: Path) -> Seal | None:
     try:
         metadata = pq.read_metadata(path)
         seal = Seal(**json.loads((metadata.metadata or {})[KEY.encode()]))
-    except (OSError, ValueError, TypeError, KeyError):
+    except (OSError, ValueError, TypeError, KeyError, pa.ArrowException):
         return None
     return seal if seal.rows == metadata.num_rows else None
 
 
 def content_of(path: Path) -> str:
-    """Return the hash of what a sealed file holds now. Raises OSError or ValueError if torn."""
+    """Return the hash of what a sealed file holds now; another than its seal's if it is torn."""
     digest = hashlib.sha256()
-    with pq.ParquetFile(path) as file:
-        for group in range(file.num_row_groups):
-            digest.update(content(file.read_row_group(group)).encode())
+    try:
+        with pq.ParquetFile(path) as file:
+            for group in range(file.num_row_groups):
+                digest.update(content(file.read_row_group(group)).encode())
+    except (OSError, ValueError, pa.ArrowException):
+        return ""
     return digest.hexdigest()
 
 
@@ -75,7 +80,8 @@ def content(table: pa.Table) -> str:
     digest = hashlib.sha256()
     for name in table.column_names:
         column = table.column(name).combine_chunks()
-        digest.update(f"{name} {len(column)} {_plain_type(column.type)}\0".encode())
+        nulls = column.null_count
+        digest.update(f"{name} {len(column)} {nulls} {_plain_type(column.type)}\0".encode())
         _add(digest, column)
     return digest.hexdigest()
 
@@ -90,7 +96,8 @@ def _plain_type(kind: pa.DataType) -> pa.DataType:
 def _add(digest: Any, column: pa.Array | pa.ChunkedArray) -> None:
     if isinstance(column, pa.ChunkedArray):
         column = column.chunk(0) if column.num_chunks else pa.array([], column.type)
-    digest.update(np.packbits(np.asarray(column.is_valid())).tobytes())
+    if column.null_count:
+        digest.update(np.packbits(np.asarray(column.is_valid())).tobytes())
     if pa.types.is_string(_plain_type(column.type)):
         _add_texts(digest, column)
     elif pa.types.is_list(column.type):
@@ -98,17 +105,21 @@ def _add(digest: Any, column: pa.Array | pa.ChunkedArray) -> None:
         digest.update(np.asarray(lengths, np.int64).tobytes())
         _add(digest, column.flatten())
     else:
-        zero = pa.scalar(0).cast(column.type)
-        values = column.fill_null(zero).to_numpy(zero_copy_only=False)
-        digest.update(np.ascontiguousarray(values).tobytes())
+        if column.null_count:
+            column = column.fill_null(pa.scalar(0).cast(column.type))
+        digest.update(np.ascontiguousarray(column.to_numpy(zero_copy_only=False)))
 
 
 def _add_texts(digest: Any, column: pa.Array) -> None:
     """Add texts by their numbers in the sorted list of those that occur."""
     coded = column if pa.types.is_dictionary(column.type) else column.dictionary_encode()
-    codes = np.asarray(coded.indices.fill_null(-1), np.int64)
+    # The last number is that of null.
+    codes = np.asarray(coded.indices.fill_null(len(coded.dictionary)))
+    occurs = np.bincount(codes, minlength=len(coded.dictionary) + 1) > 0
     texts = coded.dictionary.to_pylist()
-    used = sorted({texts[code] for code in np.unique(codes) if code >= 0})
-    numbers = np.array([used.index(text) if text in used else -1 for text in [*texts, None]])
+    used = sorted({text for text, there in zip(texts, occurs[:-1], strict=True) if there})
+    numbers = [
+        used.index(text) if there else -1 for text, there in zip(texts, occurs, strict=False)
+    ]
     digest.update(json.dumps(used).encode())
-    digest.update(numbers[codes].tobytes())
+    digest.update(np.array([*numbers, -1])[codes])

@@ -122,7 +122,9 @@ def read_manifest(directory: Path) -> dict[str, Any]:
     try:
         return json.loads((directory / MANIFEST).read_text("utf-8"))
     except (OSError, ValueError):
-        raise SettingsError(f"{directory}: is no results directory: it has no {MANIFEST}") from None
+        raise SettingsError(
+            f"{directory}: is no results directory: it has no whole {MANIFEST}"
+        ) from None
 
 
 def _refuse_what_is_not_ours(directory: Path) -> None:

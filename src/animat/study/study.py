@@ -14,7 +14,7 @@ import tomli_w
 from pydantic import AfterValidator, Field, ValidationError, field_validator, model_validator
 from pydantic_core import PydanticSerializationError
 
-from animat.life.life import Recording
+from animat.life.life import TraceChoice
 from animat.life.setting import LifeError
 from animat.mistakes import mistakes, plain, written
 from animat.settings import (
@@ -61,7 +61,7 @@ class Record(Settings):
     @classmethod
     def _known(cls, what: str) -> str:
         try:
-            Recording.parse(what)
+            TraceChoice.parse(what)
         except LifeError as error:
             raise ValueError(str(error).partition("; ")[2]) from None
         return what

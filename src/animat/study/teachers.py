@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -13,11 +12,7 @@ from numpy.typing import NDArray
 
 from animat.study.plan import Plan, world_of
 
-KEPT = 64
-"""Classes whose networks are kept in memory."""
 
-
-@lru_cache(maxsize=KEPT)
 def read_networks(directory: Path, plan: Plan, place: int) -> NDArray[np.float64]:
     """Return the weights [robots, B, W] of a class, all of whose parts are finished.
 

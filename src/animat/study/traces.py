@@ -13,7 +13,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from animat.life.life import Recording, lived
+from animat.life.life import Moment, TraceChoice, lived
 from animat.life.lives import live_on
 from animat.life.trace import row_dtype, table
 from animat.study.living import Company, Snapshot, Watched
@@ -41,27 +41,27 @@ class Traced:
         names = [pa.field("case", pa.int64()), pa.field("life", pa.int64())]
         return pa.schema([*names, *none.schema])
 
-    def tables(self, recording: Recording, wanted: pa.Schema) -> Iterator[pa.Table]:
+    def tables(self, choice: TraceChoice, wanted: pa.Schema) -> Iterator[pa.Table]:
         """Yield the traces as rows of the `wanted` columns; a life that failed has none."""
         for row in range(self.count):
             if self.watched.errors[row] is None:
-                for rows in self._trace(row, recording):
+                for rows in self._trace(row, choice):
                     yield self._told(rows, row, wanted)
 
-    def _trace(self, row: int, recording: Recording) -> Iterator[NDArray[np.void]]:
+    def _trace(self, row: int, choice: TraceChoice) -> Iterator[NDArray[np.void]]:
         setting, seed = self.company.setting, self.company.seed
         life = self.lives[row : row + 1]
         weights = None if self.weights is None else self.weights[row : row + 1]
         lifespan = int(self.watched.states["step"][row])
-        if recording.last is None:
+        if choice.last is None:
             states, present = setting.begin(seed, life, weights)
         else:
-            start = max(lifespan - recording.last, 0)
+            start = max(lifespan - choice.last, 0)
             found = _before(start, row, self.watched.earlier)
             states, present = found or setting.begin(seed, life, weights)
             live_on(setting, seed, life, states, present, start)
-            recording = Recording()
-        return lived(setting, states, present, seed, int(life[0]), lifespan, recording)
+            choice = TraceChoice()
+        return lived(Moment(setting, seed, int(life[0]), states, present), lifespan, choice)
 
     def _told(self, rows: NDArray[np.void], row: int, wanted: pa.Schema) -> pa.Table:
         setting = self.company.setting

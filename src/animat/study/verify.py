@@ -16,7 +16,7 @@ import pyarrow.parquet as pq
 
 from animat.life.engine import ENGINE
 from animat.progress import Telling
-from animat.study.numbering import Part, Piece
+from animat.study.numbering import KINDS, Kind, Part, Piece
 from animat.study.parts import classes_needed, file_names, live_pieces, part_identity, table_of
 from animat.study.plan import Plan, plan_of
 from animat.study.results import Results
@@ -56,19 +56,19 @@ def verify(results: Results, tell: Telling) -> Verified:
     if not pq.read_table(directory / CASES).equals(plan.case_table()):
         return Verified(0, 0, 0, [f"{directory / CASES}: has other cases than the study"])
     problems: list[str] = []
-    there: list[Part] = []
+    good: set[Part] = set()
     parts = list(plan.all_parts())
     for part in parts:
         found = _read_again(directory, plan, part)
-        if found is not None:
-            problems += found
-            there += [] if found else [part]
+        problems += found or []
+        good |= {part} if found == [] else set()
         tell("Parts read", 1, len(parts))
-    sample = [part for kind in plan.numbering for part in _spread(there, kind)]
+    problems += _missing_teachers(directory, plan, good)
+    sample = [part for kind in KINDS for part in _sample(plan, kind, good)]
     for part in sample:
         problems += _live_again(directory, plan, part)
         tell("Lives lived again", 1, len(sample))
-    return Verified(len(there), len(parts), len(sample), problems)
+    return Verified(len(good), len(parts), len(sample), problems)
 
 
 def _read_again(directory: Path, plan: Plan, part: Part) -> list[str] | None:
@@ -88,19 +88,25 @@ def _wrong(directory: Path, plan: Plan, part: Part) -> Iterator[str]:
             yield f"{path}: is torn"
         elif seal.identity != part_identity(plan, part):
             yield f"{path}: holds other lives than it should"
-        elif _content_now(path) != seal.content:
+        elif content_of(path) != seal.content:
             yield f"{path}: has changed since it was written"
 
 
-def _content_now(path: Path) -> str | None:
-    try:
-        return content_of(path)
-    except (OSError, ValueError):
-        return None
+def _taught_by(plan: Plan, part: Part) -> set[Part]:
+    """Return the parts of those who teach in a part."""
+    return {one for place in classes_needed(plan, part) for one in plan.parts_of_class(place)}
 
 
-def _spread(parts: list[Part], kind: str) -> list[Part]:
-    own = [part for part in parts if part.kind == kind]
+def _missing_teachers(directory: Path, plan: Plan, good: set[Part]) -> list[str]:
+    """Return what is missing because lives that are finished were taught by it."""
+    needed = {one for part in good for one in _taught_by(plan, part)}
+    missing = [one for one in sorted(needed) if not (directory / one.file).exists()]
+    return [f"{directory / one.file}: is missing, and lives were taught by it" for one in missing]
+
+
+def _sample(plan: Plan, kind: Kind, good: set[Part]) -> list[Part]:
+    """Return some parts that lie evenly among those of which a life can be lived again."""
+    own = sorted(p for p in good if p.kind == kind and _taught_by(plan, p) <= good)
     chosen = np.unique(np.linspace(0, len(own) - 1, min(SAMPLE, len(own))).round().astype(int))
     return [own[n] for n in chosen]
 
@@ -111,9 +117,8 @@ def _live_again(directory: Path, plan: Plan, part: Part) -> list[str]:
     numbering = plan.numbering[part.kind]
     row = (part.number * 7919) % numbering.rows(part.number)
     piece = _life_at(plan.pieces(part), row)
-    networks = {
-        place: read_networks(directory, plan, place) for place in classes_needed(plan, part)
-    }
+    needed = classes_needed(plan, part)
+    networks = {place: read_networks(directory, plan, place) for place in needed}
     now = table_of(plan, part.kind, live_pieces(plan, part.kind, [piece], networks))
     then = pq.read_table(path).slice(row, 1)
     differing = [name for name in now.column_names if _differ(now, then, name)]

@@ -26,7 +26,7 @@ angle = 0.5                     # rad; optional
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import tomli_w
 from pydantic import AfterValidator, Field, ValidationInfo
@@ -64,6 +64,16 @@ class WorldFile(Settings):
     objects: tuple[Site, ...]
     spares: tuple[Site, ...] = ()
 
+    def layout(self) -> Layout:
+        """Return the layout. Raises LayoutError."""
+        return Layout(
+            placements=self.objects,
+            types=self.types,
+            spares=self.spares,
+            arena=self.arena,
+            minimum_gap=self.minimum_gap,
+        )
+
 
 def read_world(path: Path) -> tuple[str, Layout, float]:
     """Return name, layout and resolution (mm) of a world's file.
@@ -73,13 +83,7 @@ def read_world(path: Path) -> tuple[str, Layout, float]:
     """
     content = read_toml(path, WorldFile, LARGEST_FILE)
     try:
-        layout = Layout(
-            placements=content.objects,
-            types=content.types,
-            spares=content.spares,
-            arena=content.arena,
-            minimum_gap=content.minimum_gap,
-        )
+        layout = content.layout()
     except SettingsError as error:
         raise type(error)(*(f"{path}: {line}" for line in error.problems)) from None
     return content.name, layout, content.resolution
@@ -91,17 +95,18 @@ def write_world(path: Path, name: str, layout: Layout, resolution: float) -> Non
     Raises:
         SettingsError: the file cannot be written.
     """
-    write_whole(path, tomli_w.dumps(world_content(name, layout, resolution)).encode())
+    content = world_file(name, layout, resolution).model_dump(exclude_none=True)
+    write_whole(path, tomli_w.dumps(content).encode())
 
 
-def world_content(name: str, layout: Layout, resolution: float) -> dict[str, Any]:
-    """Return what a world's file says of a world, and so all there is to it."""
-    return {
-        "name": name,
-        "resolution": float(resolution),
-        "minimum_gap": float(layout.minimum_gap),
-        "arena": layout.arena.model_dump(),
-        "types": [kind.model_dump(exclude_none=True) for kind in layout.types],
-        "objects": [site.model_dump() for site in layout.placements],
-        "spares": [site.model_dump() for site in layout.spares],
-    }
+def world_file(name: str, layout: Layout, resolution: float) -> WorldFile:
+    """Return a world as its file says it."""
+    return WorldFile.model_construct(
+        name=name,
+        resolution=float(resolution),
+        minimum_gap=float(layout.minimum_gap),
+        arena=layout.arena,
+        types=layout.types,
+        objects=layout.placements,
+        spares=layout.spares,
+    )

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from animat.numerics.compiled import kernel
 from animat.settings import Settings, SettingsError, nearest
@@ -21,6 +22,7 @@ MINIMUM_GAP = 70.0
 START_FROM_EDGE, START_ROOM = 50.0, 30.0
 """mm a robot's start keeps from the edge of the playground, and from whatever is solid."""
 
+MOST_TURN = 1e6  # rad; the sine is not a number beyond
 MOST_SITES = 32_000  # the raster numbers sites with 16 bits
 _MOST_PAIRS = 50
 TOUCHING = 1e-6  # mm; closer than this is touching
@@ -32,12 +34,16 @@ class LayoutError(SettingsError):
 
 
 class Placement(Settings):
-    """A site: an object of a type at x, y (mm, its centroid), turned by `angle` (rad)."""
+    """A site: an object of a type at x, y (mm, its centroid), turned by `angle` (rad).
+
+    Raises pydantic's ValidationError for an angle of more than a million radians either way, of
+    which no sine is known.
+    """
 
     type: str
     x: float
     y: float
-    angle: float = 0.0
+    angle: float = Field(default=0.0, ge=-MOST_TURN, le=MOST_TURN)
 
 
 @dataclass(frozen=True)

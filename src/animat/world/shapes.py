@@ -8,6 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.world.geometry import turn_and_shift
+
 SIDES = {"triangle": 3, "square": 4, "pentagon": 5, "hexagon": 6, "octagon": 8}
 """The shapes that have a name, and how many sides each has."""
 
@@ -54,10 +56,12 @@ def area_and_centroid(corners: NDArray[np.float64]) -> tuple[float, NDArray[np.f
 
 def _regular(sides: int, apothem: float) -> NDArray[np.float64]:
     half_step = math.pi / sides
-    radius = apothem / math.cos(half_step)
-    angles = -math.pi / 2 + half_step * (2 * np.arange(sides) + 1)
-    corners = radius * np.column_stack((np.cos(angles), np.sin(angles)))
-    # Rounded to a picometre, so that corners do not depend on the system's sine and cosine.
+    corners = np.tile((1.0, 0.0), (sides, 1))
+    for i in range(sides):
+        turn_and_shift(corners, i, i + 1, 0.0, 0.0, -math.pi / 2 + half_step * (2 * i + 1))
+    # The first side lies below the centre.
+    corners *= apothem / -corners[0, 1]
+    # Rounded to a picometre, so that a square is one.
     return np.round(corners, 9) + 0.0
 
 
