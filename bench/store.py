@@ -24,12 +24,12 @@ from pathlib import Path
 from animat.life import lives as engine
 from animat.life.lives import live_chunks
 from animat.life.setting import bring_together
-from animat.study.numbering import LARGEST
-from animat.study.plan import plan_of
+from animat.study.design.settings import LifeSettings
+from animat.study.design.study import Study
+from animat.study.living.numbering import LARGEST
+from animat.study.living.plan import plan_of
 from animat.study.provenance import provenance
-from animat.study.run import run, threads
-from animat.study.settings import LifeSettings
-from animat.study.study import Study
+from animat.study.running.run import run, threads
 
 SEED = 1
 

@@ -15,7 +15,7 @@ from typing import IO, NamedTuple
 import pyarrow.parquet as pq
 import pytest
 
-import animat.study.publication
+import animat.study.reproduction.publication
 from animat.cli import main
 from animat.life.life import live
 from animat.mind.mind import Mind
@@ -391,7 +391,7 @@ class TestReproduce:
         for name in ("lives.parquet", "claims.json", "settings.toml", "figure3_grasp.svg"):
             assert (tmp_path / "again" / name).read_bytes() == (out / name).read_bytes()
 
-        monkeypatch.setattr(animat.study.publication, "publish", briefly)
+        monkeypatch.setattr(animat.study.reproduction.publication, "publish", briefly)
         assert animat_says("reproduce", *SMALL).code == 2
         assert (out / "lives.parquet").is_file()
         assert animat_says("reproduce", *SMALL, "--force").code == 0
@@ -405,7 +405,7 @@ class TestReproduce:
             sizes.append(size)
             raise KeyboardInterrupt
 
-        monkeypatch.setattr("animat.study.reproduction.reproduce", run)
+        monkeypatch.setattr("animat.study.reproduction.reproduction.reproduce", run)
         for options in ((), ("--quick",), ("--quick", "--lives", "7"), ("--seeds", "3")):
             assert animat_says("reproduce", *options).code == 130
         full, quick, changed, seeds = sizes
@@ -425,7 +425,7 @@ class TestReproduce:
             (directory / "lives.parquet").touch()
             raise KeyboardInterrupt
 
-        monkeypatch.setattr(animat.study.publication, "publish", interrupted)
+        monkeypatch.setattr(animat.study.reproduction.publication, "publish", interrupted)
         for options in (("--force",), ("--out", "new/one")):
             said = animat_says("reproduce", *SMALL, *options)
             assert (said.code, said.out) == (130, "")
@@ -434,7 +434,7 @@ class TestReproduce:
         assert names(old) == ["how_made.json"]
         assert names(tmp_path / "new") == [".one.partial"]
 
-        monkeypatch.setattr(animat.study.publication, "publish", briefly)
+        monkeypatch.setattr(animat.study.reproduction.publication, "publish", briefly)
         said = animat_says("reproduce", *SMALL, "--seed", "1", "--out", "new/one")
         assert said.code == 2
         assert "seed = 0 there and 1 here" in said.err
@@ -485,7 +485,7 @@ def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name_and_is_gone_o
     log = tmp_path / ".out.partial" / "experiment2" / "log.jsonl"
     before = log.read_text().count('"event": "part", ')
     assert before > 0
-    monkeypatch.setattr(animat.study.publication, "publish", briefly)
+    monkeypatch.setattr(animat.study.reproduction.publication, "publish", briefly)
     assert animat_says("reproduce", *size, "--out", "out").code == 0
     assert names(tmp_path) == ["out"]
     log = tmp_path / "out" / "experiment2" / "log.jsonl"

@@ -19,12 +19,12 @@ from animat.mind.mind import Behaviour, Drive, Learning, Mind, VariableChange
 from animat.mind.physiology import PHYSIOLOGIES, Variable
 from animat.robot.khepera import Khepera
 from animat.settings import Settings, SettingsError, read_toml
-from animat.study.design import Exclusion
-from animat.study.plan import Plan, plan_of
-from animat.study.run import run, threads
-from animat.study.sampling import Sample
-from animat.study.settings import LifeSettings, Teacher, WorldChoice
-from animat.study.study import Record, Study, read_study
+from animat.study.design.design import Exclusion
+from animat.study.design.sampling import Sample
+from animat.study.design.settings import LifeSettings, Teacher, WorldChoice
+from animat.study.design.study import Record, Study, read_study
+from animat.study.living.plan import Plan, plan_of
+from animat.study.running.run import run, threads
 from animat.world.world import World
 
 ROOT = Path(__file__).parents[1]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from graphlib import TopologicalSorter
 from itertools import product
 from pathlib import Path
 from typing import NamedTuple
@@ -206,3 +207,17 @@ def test_no_layer_stands_on_itself():
         free = [layer for layer in LAYERS if layer not in order and KNOWS[layer] <= set(order)]
         assert free
         order += free
+
+
+def test_no_part_of_a_layer_stands_on_itself():
+    """What `store` is built of knows nothing of `store`, and so on, for all packages in layers."""
+    stands_on: dict[tuple[str, ...], set[tuple[str, ...]]] = {}
+    for path in modules():
+        here = path.relative_to(ROOT).parts[:2]
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom):
+                there = tuple((node.module or "").split(".")[1:3])
+                if there[:1] == here[:1] and ROOT.joinpath(*there).is_dir() and there != here:
+                    stands_on.setdefault(here, set()).add(there)
+    assert ("study", "store") in stands_on
+    TopologicalSorter(stands_on).prepare()

@@ -13,9 +13,9 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from animat.study import lock
-from animat.study.lock import hold
-from animat.study.results import Results
+from animat.study.store import lock
+from animat.study.store.lock import hold
+from animat.study.store.results import Results
 
 STUDY = """
 name = "tiny"

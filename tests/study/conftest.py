@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from animat.study.plan import Plan
-from animat.study.publication import publish
-from animat.study.reproduction import Reproduction, Size, reproduce
-from animat.study.run import run, threads
-from animat.study.settings import LifeSettings
+from animat.study.design.settings import LifeSettings
+from animat.study.living.plan import Plan
+from animat.study.reproduction.publication import publish
+from animat.study.reproduction.reproduction import Reproduction, Size, reproduce
+from animat.study.running.run import run, threads
 
 Told = list[tuple[str, int, int]]
 

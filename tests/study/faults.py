@@ -28,10 +28,10 @@ from pathlib import Path
 from typing import Any
 
 from animat.settings import SettingsError
-from animat.study.plan import Plan, plan_of
-from animat.study.run import run, threads
-from animat.study.store import StoreError
-from animat.study.study import Study
+from animat.study.design.study import Study
+from animat.study.living.plan import Plan, plan_of
+from animat.study.running.run import run, threads
+from animat.study.store.store import StoreError
 
 SMALL = """
 name = "small"

@@ -13,8 +13,8 @@ from animat.life.setting import LifeError
 from animat.mind.mind import Mind
 from animat.settings import SettingsError
 from animat.study import one_life
+from animat.study.design.settings import LifeSettings
 from animat.study.one_life import FIGURE_ROWS, OneLife, live_one, story
-from animat.study.settings import LifeSettings
 from animat.world.world import World
 
 

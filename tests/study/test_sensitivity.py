@@ -6,16 +6,16 @@ import pytest
 
 from animat.report.multiverse.sensitivity import sobol_table
 from animat.settings import SettingsError, validated
-from animat.study.axes import axes
-from animat.study.design import cases
+from animat.study.design.axes import axes
+from animat.study.design.design import cases
+from animat.study.design.sampling import Sample
+from animat.study.design.shipped import shipped
+from animat.study.design.study import Study, read_study
+from animat.study.living.plan import Plan
 from animat.study.multiverse.designs import with_points
-from animat.study.plan import Plan
-from animat.study.results import open as open_results
-from animat.study.run import run, threads
-from animat.study.sampling import Sample
+from animat.study.running.run import run, threads
 from animat.study.sensitivity import check, name_of, publish, sensitivity, short
-from animat.study.shipped import shipped
-from animat.study.study import Study, read_study
+from animat.study.store.results import open as open_results
 
 SMALL = ("lives=4", "steps=400", "teacher.robots=1", "teacher.steps=600", "design.sample.points=4")
 

@@ -49,7 +49,7 @@ def main() -> None:
 def _explain(error: Exception) -> NoReturn:
     """Say what went wrong in a line for each mistake, and exit."""
     from animat.settings import SettingsError
-    from animat.study.lock import RunError
+    from animat.study.store.lock import RunError
 
     if "--debug" in sys.argv:
         traceback.print_exception(error)

@@ -15,8 +15,8 @@ from animat.cli.options import Debug, compiling_told
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from animat.study.design import Case
-    from animat.study.expectation import Expectation, Range
+    from animat.study.design.design import Case
+    from animat.study.running.expectation import Expectation, Range
 
 PRINTED_WIDTH = 120
 """Characters in a line of a table that is printed elsewhere than on a terminal."""
@@ -41,12 +41,12 @@ def check(study: StudyFile, changes: Set = None, debug: Debug = False) -> None:
     """Say what a study would run, and what that would cost, without running it."""
     from rich.console import Console
 
-    from animat.study.design import excluded
-    from animat.study.expectation import expect
-    from animat.study.livable import check_livable
-    from animat.study.plan import Plan
-    from animat.study.shipped import study_file
-    from animat.study.study import read_study
+    from animat.study.design.design import excluded
+    from animat.study.design.shipped import study_file
+    from animat.study.design.study import read_study
+    from animat.study.living.plan import Plan
+    from animat.study.running.expectation import expect
+    from animat.study.running.livable import check_livable
 
     path = study_file(study)
     asked = read_study(path, changes or ())
@@ -97,7 +97,7 @@ def _written(value: Any) -> str:
 
 
 def _costs(expected: Expectation) -> list[str]:
-    from animat.study.expectation import STEPS
+    from animat.study.running.expectation import STEPS
 
     learning = ""
     if expected.robots:

@@ -20,8 +20,8 @@ def export(
     debug: Debug = False,
 ) -> None:
     """Write the lives of a study, with the factors of their cases, as one file."""
-    from animat.study.export import export as write
-    from animat.study.results import open as open_results
+    from animat.study.store.export import export as write
+    from animat.study.store.results import open as open_results
 
     rows = write(open_results(directory), to, out, force=force)
     print(f"{rows:,} lives are in {out}")

@@ -14,8 +14,8 @@ from animat.cli.check import Set
 from animat.cli.options import Debug, Out, Quick, Threads, compiling_told
 
 if TYPE_CHECKING:
+    from animat.study.design.study import Study
     from animat.study.multiverse.run import Multiverse
-    from animat.study.study import Study
 
 QUICK = (
     "lives=10",
@@ -50,16 +50,16 @@ def multiverse(
     A directory that is finished is analysed again; one that is not is gone on with.
     """
     from animat.progress import telling
-    from animat.study.lock import HeldError
+    from animat.study.design.shipped import study_file
+    from animat.study.design.study import read_study
     from animat.study.multiverse.designs import of_size
     from animat.study.multiverse.page import FIGURES, publish
     from animat.study.multiverse.run import InterruptedStudyError, Size, run_multiverse
     from animat.study.multiverse.universes import readings_of
     from animat.study.provenance import provenance
-    from animat.study.run import threads as workers_of
-    from animat.study.shipped import study_file
-    from animat.study.store import StoreError
-    from animat.study.study import read_study
+    from animat.study.running.run import threads as workers_of
+    from animat.study.store.lock import HeldError
+    from animat.study.store.store import StoreError
 
     asked = read_study(study_file(study), [*(QUICK if quick else ()), *(changes or ())])
     readings_of(asked)
@@ -90,7 +90,7 @@ def multiverse(
 
 def _say_what(asked: Study, directory: Path) -> None:
     from animat.report.multiverse.universes import CELLS
-    from animat.study.design import excluded
+    from animat.study.design.design import excluded
     from animat.study.multiverse.designs import count
     from animat.study.multiverse.universes import readings_of
 

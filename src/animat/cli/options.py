@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from animat.study.settings import LifeSettings
+    from animat.study.design.settings import LifeSettings
 
 SettingsFile = Annotated[
     Path | None,
@@ -34,7 +34,7 @@ def settings_of(file: Path | None, **given: str | None) -> LifeSettings:
     from pydantic import ValidationError
 
     from animat.settings import explain, read_toml
-    from animat.study.settings import LifeSettings
+    from animat.study.design.settings import LifeSettings
 
     settings = read_toml(file, LifeSettings) if file is not None else LifeSettings()
     chosen = {name: value for name, value in given.items() if value is not None}

@@ -25,8 +25,8 @@ def report(
 ) -> None:
     """Write one page on a study: what was asked, how it was run, what came out."""
     from animat.progress import telling
-    from animat.study.report import write_report
-    from animat.study.results import open as open_results
+    from animat.study.page.report import write_report
+    from animat.study.store.results import open as open_results
 
     results = open_results(directory)
     with telling() as tell:

@@ -15,7 +15,7 @@ from animat.cli.app import app
 from animat.cli.options import Debug, Seed, SettingsFile, compiling_told, settings_of
 
 if TYPE_CHECKING:
-    from animat.study.reproduction import Reproduction
+    from animat.study.reproduction.reproduction import Reproduction
 
 PRINTED_WIDTH = 120
 """Characters in a line of a table that is printed elsewhere than on a terminal."""
@@ -40,10 +40,10 @@ def reproduce(
 ) -> None:
     """Run both experiments of the paper and judge its claims."""
     from animat.progress import telling
-    from animat.study.output import fresh_directory
-    from animat.study.publication import FIGURES, publish
-    from animat.study.reproduction import QUICK, Size, check
-    from animat.study.reproduction import reproduce as run
+    from animat.study.reproduction.publication import FIGURES, publish
+    from animat.study.reproduction.reproduction import QUICK, Size, check
+    from animat.study.reproduction.reproduction import reproduce as run
+    from animat.study.store.output import fresh_directory
 
     size = QUICK if quick else Size()
     given = {"lives": lives, "robots": seeds, "steps": steps}

@@ -12,8 +12,8 @@ from animat.cli.app import DONE, FAILED, INTERRUPTED, app
 from animat.cli.options import Debug, compiling_told
 
 if TYPE_CHECKING:
-    from animat.study.plan import Plan
-    from animat.study.run import Outcome
+    from animat.study.living.plan import Plan
+    from animat.study.running.run import Outcome
 
 SHOWN = 3
 """Lives that failed of which the error is shown."""
@@ -37,13 +37,13 @@ def run(
 ) -> int:
     """Live the lives of a study, or those that its results directory still lacks."""
     from animat.progress import telling
-    from animat.study.livable import check_livable
-    from animat.study.plan import plan_of
-    from animat.study.run import run as live
-    from animat.study.run import threads as workers_of
-    from animat.study.shipped import study_file
-    from animat.study.store import MANIFEST
-    from animat.study.study import read_study
+    from animat.study.design.shipped import study_file
+    from animat.study.design.study import read_study
+    from animat.study.living.plan import plan_of
+    from animat.study.running.livable import check_livable
+    from animat.study.running.run import run as live
+    from animat.study.running.run import threads as workers_of
+    from animat.study.store.store import MANIFEST
 
     plan = plan_of(read_study(study_file(study), set_ or ()).to_toml())
     directory = out or Path("results") / plan.study.name
@@ -56,7 +56,7 @@ def run(
 
 
 def _say_what(plan: Plan, directory: Path) -> None:
-    from animat.study.design import excluded
+    from animat.study.design.design import excluded
 
     cases, lives = len(plan.cases), plan.numbering["lives"].total
     print(f"{plan.study.name}: {cases:,} cases, {lives:,} lives; results in {directory}")
@@ -66,7 +66,7 @@ def _say_what(plan: Plan, directory: Path) -> None:
 
 
 def _say_how_it_ended(outcome: Outcome, directory: Path) -> int:
-    from animat.study.results import open as open_results
+    from animat.study.store.results import open as open_results
 
     lives = outcome.tally.counts["lives"]
     total = outcome.tally.numbering["lives"].total

@@ -28,17 +28,17 @@ def sensitivity(
 ) -> int:
     """Say which continuous parameters lifespans depend on: Sobol's indices."""
     from animat.progress import telling
-    from animat.study.lock import HeldError
-    from animat.study.plan import Plan
+    from animat.study.design.shipped import study_file
+    from animat.study.design.study import read_study
+    from animat.study.living.plan import Plan
     from animat.study.provenance import provenance
-    from animat.study.results import open as open_results
-    from animat.study.run import run
-    from animat.study.run import threads as workers_of
+    from animat.study.running.run import run
+    from animat.study.running.run import threads as workers_of
     from animat.study.sensitivity import check, publish, short
     from animat.study.sensitivity import sensitivity as indices_of
-    from animat.study.shipped import study_file
-    from animat.study.store import StoreError
-    from animat.study.study import read_study
+    from animat.study.store.lock import HeldError
+    from animat.study.store.results import open as open_results
+    from animat.study.store.store import StoreError
 
     asked = read_study(study_file(study), [*(QUICK if quick else ()), *(changes or ())])
     check(asked)

@@ -14,28 +14,28 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from animat.study.design import Case, Design, Excluded, cases, excluded
-    from animat.study.results import Results
-    from animat.study.results import open as open  # noqa: A004
-    from animat.study.settings import CaseSettings, LifeSettings, Teacher, WorldChoice
-    from animat.study.shipped import study_file
-    from animat.study.study import Study, read_study
+    from animat.study.design.design import Case, Design, Excluded, cases, excluded
+    from animat.study.design.settings import CaseSettings, LifeSettings, Teacher, WorldChoice
+    from animat.study.design.shipped import study_file
+    from animat.study.design.study import Study, read_study
+    from animat.study.store.results import Results
+    from animat.study.store.results import open as open  # noqa: A004
 
 _HOMES = {
-    "Case": "animat.study.design",
-    "CaseSettings": "animat.study.settings",
-    "Design": "animat.study.design",
-    "Excluded": "animat.study.design",
-    "LifeSettings": "animat.study.settings",
-    "Results": "animat.study.results",
-    "Study": "animat.study.study",
-    "Teacher": "animat.study.settings",
-    "WorldChoice": "animat.study.settings",
-    "cases": "animat.study.design",
-    "excluded": "animat.study.design",
-    "open": "animat.study.results",
-    "read_study": "animat.study.study",
-    "study_file": "animat.study.shipped",
+    "Case": "animat.study.design.design",
+    "CaseSettings": "animat.study.design.settings",
+    "Design": "animat.study.design.design",
+    "Excluded": "animat.study.design.design",
+    "LifeSettings": "animat.study.design.settings",
+    "Results": "animat.study.store.results",
+    "Study": "animat.study.design.study",
+    "Teacher": "animat.study.design.settings",
+    "WorldChoice": "animat.study.design.settings",
+    "cases": "animat.study.design.design",
+    "excluded": "animat.study.design.design",
+    "open": "animat.study.store.results",
+    "read_study": "animat.study.design.study",
+    "study_file": "animat.study.design.shipped",
 }
 
 __all__ = [

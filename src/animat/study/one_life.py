@@ -20,8 +20,8 @@ from animat.mind.mind import Mind
 from animat.progress import Telling
 from animat.robot.khepera import Khepera
 from animat.settings import SettingsError
+from animat.study.design.settings import LifeSettings
 from animat.study.provenance import provenance
-from animat.study.settings import LifeSettings
 from animat.world.world import World
 
 STEPS = 300_000

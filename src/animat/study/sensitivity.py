@@ -19,10 +19,10 @@ from animat.report.figures.sobol import ORDERS, sobol_figure
 from animat.report.figures.style import save
 from animat.report.multiverse.sensitivity import sobol_table
 from animat.settings import SettingsError
-from animat.study.factors import Range
+from animat.study.design.factors import Range
+from animat.study.design.study import Study
 from animat.study.provenance import provenance
-from animat.study.results import Results
-from animat.study.study import Study
+from animat.study.store.results import Results
 
 AGENT = "mind.agent"
 

@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import pytest
 
+from animat.study.design.shipped import shipped
+from animat.study.design.study import Study, read_study
 from animat.study.multiverse.page import publish
 from animat.study.multiverse.run import Multiverse, Size, run_multiverse
-from animat.study.run import threads
-from animat.study.shipped import shipped
-from animat.study.study import Study, read_study
+from animat.study.running.run import threads
 
 SMALL = (
     "lives=3",

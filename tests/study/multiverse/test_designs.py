@@ -5,12 +5,12 @@ import pytest
 
 from animat.report.multiverse.readings import fewest_together
 from animat.settings import validated
-from animat.study.axes import axes, combinations, factors, left_out
-from animat.study.design import cases
+from animat.study.design.axes import axes, combinations, factors, left_out
+from animat.study.design.design import cases
+from animat.study.design.study import Study
 from animat.study.multiverse import designs
 from animat.study.multiverse.designs import count, fresh, longer, of_size, portions, with_points
 from animat.study.multiverse.universes import label, readings_of
-from animat.study.study import Study
 
 FEWEST = 20
 """Universes in which every two values are to meet."""

@@ -9,12 +9,12 @@ from animat.report.claims import judge_learning, judge_lifespans
 from animat.report.lives import column
 from animat.report.multiverse.universes import CELLS, CLAIMS, EFFECTS
 from animat.settings import validated
+from animat.study.design.study import Study
+from animat.study.living.plan import Plan
 from animat.study.multiverse import judged as module
 from animat.study.multiverse.judged import judge
-from animat.study.plan import Plan
-from animat.study.results import open as open_results
-from animat.study.run import run, threads
-from animat.study.study import Study
+from animat.study.running.run import run, threads
+from animat.study.store.results import open as open_results
 
 
 @pytest.fixture(scope="module")

@@ -16,8 +16,8 @@ from animat.study.multiverse.run import (
     Size,
     run_multiverse,
 )
-from animat.study.results import open as open_results
-from animat.study.run import threads
+from animat.study.running.run import threads
+from animat.study.store.results import open as open_results
 
 NOTHING_BESIDE = Size(confirming=0, longer=0)
 

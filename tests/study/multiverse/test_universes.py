@@ -4,14 +4,14 @@ import pyarrow as pa
 import pytest
 
 from animat.settings import SettingsError, validated
+from animat.study.design.study import Study
+from animat.study.living.plan import Plan
 from animat.study.multiverse.universes import (
     CELL_NAMES,
     label,
     readings_of,
     universes_of,
 )
-from animat.study.plan import Plan
-from animat.study.study import Study
 
 ASKED_FOR = {
     "physiology", "lethal margin", "overflow", "failed act", "failure effect", "error", "gate",

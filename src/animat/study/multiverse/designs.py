@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 
 from animat.report.multiverse.universes import CELLS
 from animat.settings import validated
-from animat.study.axes import axes, combinations, is_whole, left_out
-from animat.study.factors import Range
-from animat.study.keys import read_key
+from animat.study.design.axes import axes, combinations, is_whole, left_out
+from animat.study.design.factors import Range
+from animat.study.design.keys import read_key
+from animat.study.design.sampling import MOST_POINTS
+from animat.study.design.study import Study
 from animat.study.multiverse.universes import CELL, label, readings_of, spread_factors
-from animat.study.sampling import MOST_POINTS
-from animat.study.study import Study
 
 PORTION = 20_000
 """Cases of a portion of the full product, at most, those left out included."""

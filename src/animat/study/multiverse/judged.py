@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from animat.report.estimates import RESAMPLES
 from animat.report.multiverse.universes import CELLS, complete, deaths, judge_universes
+from animat.study.living.plan import Class, Plan, world_of
 from animat.study.multiverse.universes import Reading, Universes, universes_of
-from animat.study.plan import Class, Plan, world_of
-from animat.study.results import Results
+from animat.study.store.results import Results
 
 AT_A_TIME = 256
 """Universes whose lives are in memory at a time."""

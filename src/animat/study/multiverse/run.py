@@ -23,14 +23,14 @@ from animat.report.multiverse.shares import verdict_shares
 from animat.report.multiverse.smallest import Confirmation, SmallestSet, confirm, smallest_set
 from animat.report.multiverse.universes import CLAIMS
 from animat.settings import SettingsError
-from animat.study.design import Excluded, excluded
+from animat.study.design.design import Excluded, excluded
+from animat.study.design.study import Study
+from animat.study.living.plan import Plan
 from animat.study.multiverse.designs import fresh, longer, portions
 from animat.study.multiverse.judged import Judged, judge
 from animat.study.multiverse.universes import Reading, Universes, readings_of
-from animat.study.plan import Plan
-from animat.study.results import open as open_results
-from animat.study.run import Workers, run
-from animat.study.study import Study
+from animat.study.running.run import Workers, run
+from animat.study.store.results import open as open_results
 
 LATE = 300_000
 """The cap of the paper's Experiment 1, taken here for the lives that show what a cap does."""

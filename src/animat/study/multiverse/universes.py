@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from animat.report.multiverse.universes import CELLS
 from animat.settings import SettingsError
-from animat.study.factors import Range, Scalar
-from animat.study.study import Study
+from animat.study.design.factors import Range, Scalar
+from animat.study.design.study import Study
 
 CELL = "cell"
 

@@ -1,0 +1,1 @@
+"""What the page on a study says of how it was asked and run."""

@@ -1,0 +1,1 @@
+"""Results directories: what stands in one, who holds it, whether it is whole."""

@@ -1,0 +1,148 @@
+"""Whether a results directory still holds what was lived, and whether that was right.
+
+Every part is read and its hash taken again, which finds whatever has changed since; and some lives,
+spread over all, are lived again, which finds what was wrong from the beginning.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from animat.life.engine import ENGINE
+from animat.progress import Telling
+from animat.study.living.numbering import KINDS, Kind, Part, Piece
+from animat.study.living.parts import (
+    classes_needed,
+    file_names,
+    live_pieces,
+    part_identity,
+    table_of,
+)
+from animat.study.living.plan import Plan, plan_of
+from animat.study.living.seal import content, content_of, seal_of
+from animat.study.living.teachers import read_networks
+from animat.study.store.results import Results
+from animat.study.store.store import CASES, STUDY, text_hash
+
+SAMPLE = 64
+"""Parts of a kind from which a life is lived again; they lie evenly spread over all there are."""
+
+
+class Verified(NamedTuple):
+    """What was looked at: parts read of all there are to be, lives lived again; what is wrong."""
+
+    parts: int
+    all_parts: int
+    lives: int
+    problems: list[str]
+
+
+def verify(results: Results, tell: Telling) -> Verified:
+    """Read everything a results directory holds, and live some of its lives again.
+
+    Raises SettingsError where the study cannot be lived here at all.
+    """
+    directory = results.directory
+    if results.manifest["engine"] != ENGINE:
+        was = results.manifest["engine"]
+        wrong = (
+            f"{directory}: was lived by engine {was}; this is engine {ENGINE}, whose lives differ"
+        )
+        return Verified(0, 0, 0, [wrong])
+    text = (directory / STUDY).read_text("utf-8")
+    if text_hash(text) != results.manifest["hash"]:
+        return Verified(0, 0, 0, [f"{directory / STUDY}: has changed since"])
+    plan = plan_of(text)
+    if not pq.read_table(directory / CASES).equals(plan.case_table()):
+        return Verified(0, 0, 0, [f"{directory / CASES}: has other cases than the study"])
+    problems: list[str] = []
+    good: set[Part] = set()
+    parts = list(plan.all_parts())
+    for part in parts:
+        found = _read_again(directory, plan, part)
+        problems += found or []
+        good |= {part} if found == [] else set()
+        tell("Parts read", 1, len(parts))
+    problems += _missing_teachers(directory, plan, good)
+    sample = [part for kind in KINDS for part in _sample(plan, kind, good)]
+    for part in sample:
+        problems += _live_again(directory, plan, part)
+        tell("Lives lived again", 1, len(sample))
+    return Verified(len(good), len(parts), len(sample), problems)
+
+
+def _read_again(directory: Path, plan: Plan, part: Part) -> list[str] | None:
+    """Return what is wrong with the files of a part; None if it is not finished."""
+    if not (directory / part.file).exists():
+        return None
+    return list(_wrong(directory, plan, part))
+
+
+def _wrong(directory: Path, plan: Plan, part: Part) -> Iterator[str]:
+    for name in file_names(plan, part):
+        path = directory / name
+        seal = seal_of(path)
+        if not path.exists():
+            yield f"{path}: is missing"
+        elif seal is None:
+            yield f"{path}: is torn"
+        elif seal.identity != part_identity(plan, part):
+            yield f"{path}: holds other lives than it should"
+        elif content_of(path) != seal.content:
+            yield f"{path}: has changed since it was written"
+
+
+def _taught_by(plan: Plan, part: Part) -> set[Part]:
+    """Return the parts of those who teach in a part."""
+    return {one for place in classes_needed(plan, part) for one in plan.parts_of_class(place)}
+
+
+def _missing_teachers(directory: Path, plan: Plan, good: set[Part]) -> list[str]:
+    """Return what is missing because lives that are finished were taught by it."""
+    needed = {one for part in good for one in _taught_by(plan, part)}
+    missing = [one for one in sorted(needed) if not (directory / one.file).exists()]
+    return [f"{directory / one.file}: is missing, and lives were taught by it" for one in missing]
+
+
+def _sample(plan: Plan, kind: Kind, good: set[Part]) -> list[Part]:
+    """Return some parts that lie evenly among those of which a life can be lived again."""
+    own = sorted(p for p in good if p.kind == kind and _taught_by(plan, p) <= good)
+    chosen = np.unique(np.linspace(0, len(own) - 1, min(SAMPLE, len(own))).round().astype(int))
+    return [own[n] for n in chosen]
+
+
+def _live_again(directory: Path, plan: Plan, part: Part) -> list[str]:
+    """Live a life of a part again, and return in what it differs from what is written."""
+    path = directory / part.file
+    numbering = plan.numbering[part.kind]
+    row = (part.number * 7919) % numbering.rows(part.number)
+    piece = _life_at(plan.pieces(part), row)
+    needed = classes_needed(plan, part)
+    networks = {place: read_networks(directory, plan, place) for place in needed}
+    now = table_of(plan, part.kind, live_pieces(plan, part.kind, [piece], networks))
+    then = pq.read_table(path).slice(row, 1)
+    differing = [name for name in now.column_names if _differ(now, then, name)]
+    if not differing:
+        return []
+    return [f"{path}: row {row} is another when it is lived again, in {', '.join(differing)}"]
+
+
+def _life_at(pieces: list[Piece], row: int) -> Piece:
+    """Return the piece of the one life that has a row of a part."""
+    for place, start, stop in pieces:
+        if row < stop - start:
+            return Piece(place, start + row, start + row + 1)
+        row -= stop - start
+    raise IndexError(row)
+
+
+def _differ(now: pa.Table, then: pa.Table, name: str) -> bool:
+    return name not in then.column_names or content(now.select([name])) != content(
+        then.select([name])
+    )
