@@ -11,7 +11,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from animat.report.figures.style import BLACK, BLUE, GREY, VERMILLION, new_figure, styled
 
 _POINTS = LinearSegmentedColormap.from_list("points", [VERMILLION, "white", BLUE])
-_DARK = 0.6
+_UNSURE = "#666666"
 _TICKS = (
     (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0),
     (0.5, 0.7, 1.0, 1.4, 2.0),
@@ -24,25 +24,24 @@ _FARTHEST = 30.0  # factors beyond it, of a few universes, are not worth the roo
 def points_figure(effects: pa.Table, claims: Sequence[str]) -> Figure:
     """Points by which a value of a reading changes the share of universes in which a claim holds.
 
-    `effects` is of `multiverse.marginal.marginal_effects`. Grey numbers have an interval with 0.
+    `effects` is of `multiverse.marginal.marginal_effects`. Only cells whose interval excludes 0
+    are coloured; the numbers of the others are grey.
     """
     found = _by_contrast(effects)
     fig = new_figure(7.2, 0.21 * len(found) + 0.9)
     ax = fig.subplots()
-    points = np.array([[rows[claim]["effect"] for claim in claims] for rows in found.values()])
-    ax.imshow(points, cmap=_POINTS, vmin=-1.0, vmax=1.0, aspect="auto")
-    for place, rows in enumerate(found.values()):
-        for number, claim in enumerate(claims):
-            row = rows[claim]
-            if np.isnan(row["effect"]):
-                continue
-            sure = row["low"] > 0.0 or row["high"] < 0.0
-            ink = "white" if abs(row["effect"]) > _DARK else BLACK
-            ax.text(
-                number, place, f"{round(100 * row['effect']):+d}", ha="center", va="center",
-                fontsize=8, color=ink if sure else GREY,
-                fontweight="bold" if sure else "normal",
-            )  # fmt: skip
+    points, low, high = (
+        np.array([[rows[claim][part] for claim in claims] for rows in found.values()])
+        for part in ("effect", "low", "high")
+    )
+    sure = (low > 0.0) | (high < 0.0)
+    ax.imshow(np.where(sure, points, 0.0), cmap=_POINTS, vmin=-1.0, vmax=1.0, aspect="auto")
+    for place, number in zip(*np.nonzero(~np.isnan(points)), strict=True):
+        ax.text(
+            number, place, f"{round(100 * points[place, number]):+d}", ha="center", va="center",
+            fontsize=8, color=BLACK if sure[place, number] else _UNSURE,
+            fontweight="bold" if sure[place, number] else "normal",
+        )  # fmt: skip
     ax.set_xticks(range(len(claims)), claims)
     ax.xaxis.tick_top()
     ax.set_yticks(range(len(found)), list(found), fontsize=8)
