@@ -153,6 +153,27 @@ def test_universes_that_all_failed_are_told_of(small, lived, tmp_path, monkeypat
         go(small, lived.directory)
 
 
+def test_where_only_universes_beside_them_failed_the_others_are_told_of(
+    small, lived, tmp_path, monkeypatch
+):
+    directory = tmp_path / "again"
+    shutil.copytree(lived.directory, directory)
+    one = SmallestSet("C1", (), 40, share(39, 40))
+    monkeypatch.setattr(module, "smallest_set", lambda *_: one)
+    whole = module.judge
+
+    def judge(plan, results, readings, **settings):
+        judged = whole(plan, results, readings, **settings)
+        if results.directory.name == "universes":
+            return judged
+        return judged._replace(table=judged.table.select(["universe"]).slice(0, 0))
+
+    monkeypatch.setattr(module, "judge", judge)
+    found = go(small, directory, Size(confirming=4, longer=4, late=1_200))
+    assert found.table.equals(lived.found.table)
+    assert (found.cap, found.confirmed) == (None, {})
+
+
 def test_the_tables_are_those_of_the_store(lived):
     assert pq.read_table(lived.directory / "universes/cases.parquet").num_rows == 4 * (
         lived.found.table.num_rows

@@ -56,8 +56,8 @@ class Multiverse(NamedTuple):
     """What was found in the universes of a study. Tables are those of `animat.report.multiverse`.
 
     `left_out` is how many cases each rule leaves out. `found` has a set for each claim, or None;
-    `confirmed` what fresh universes say of those found. `cap` is None where nothing was lived to a
-    late cap, `foretold` where scikit-learn is not installed.
+    `confirmed` what fresh universes say of those found, where not all of them failed. `cap` is None
+    where nothing was lived to a late cap, `foretold` where scikit-learn is not installed.
     """
 
     study: Study
@@ -201,7 +201,8 @@ def _confirmed(
             lived[one.conditions] = _lived(
                 Plan(again), readings_of(study), out / name, name, workers, tell
             ).table
-        told[claim] = confirm(one, lived[one.conditions])
+        if lived[one.conditions].num_rows:
+            told[claim] = confirm(one, lived[one.conditions])
     return told
 
 
@@ -216,4 +217,6 @@ def _late(
     same = len(late.universes.values)
     if late.universes.values != judged.universes.values[:same]:
         raise AssertionError("a sample does not begin like a larger one of the same seed")
+    if not late.table.num_rows:
+        return None
     return cap_effects(judged.table, late.table)
