@@ -77,3 +77,17 @@ def test_what_could_not_be_compared_is_left_blank(effects, legible):
         legible(factors_figure(table, GAINS))
         legible(points_figure(table, ["C1"]))
     assert not points_figure(pa.Table.from_pylist(nothing), ["C1"]).axes[0].texts
+
+
+def test_long_words_leave_room_for_the_drawing(effects, legible):
+    rows = [
+        {**row, "reading": "what is meant by overflow " * 3, "against": "clamped at its bound " * 2}
+        for row in effects.to_pylist()
+    ]
+    table = pa.Table.from_pylist(rows)
+    for fig in (points_figure(table, ["C1"]), factors_figure(table, GAINS)):
+        legible(fig)
+        assert all(ax.get_window_extent().width > 0.12 * fig.bbox.width for ax in fig.axes)
+        lethal, burst = (label.get_text() for label in fig.axes[0].get_yticklabels())
+        assert "lethal" in lethal
+        assert "burst" in burst

@@ -8,7 +8,15 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from animat.report.figures.style import BLACK, BLUE, GREY, VERMILLION, new_figure, styled
+from animat.report.figures.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    VERMILLION,
+    new_figure,
+    shortened,
+    styled,
+)
 
 _POINTS = LinearSegmentedColormap.from_list("points", [VERMILLION, "white", BLUE])
 _UNSURE = "#666666"
@@ -44,7 +52,7 @@ def points_figure(effects: pa.Table, claims: Sequence[str]) -> Figure:
         )  # fmt: skip
     ax.set_xticks(range(len(claims)), claims)
     ax.xaxis.tick_top()
-    ax.set_yticks(range(len(found)), list(found), fontsize=8)
+    ax.set_yticks(range(len(found)), _words(found), fontsize=8)
     ax.tick_params(length=0)
     ax.spines[:].set_visible(False)
     return fig
@@ -78,7 +86,7 @@ def factors_figure(effects: pa.Table, outcomes: Mapping[str, str]) -> Figure:
         ax.xaxis.set_minor_locator(NullLocator())
         ax.set_xlabel(words)
         ax.grid(axis="x")
-    axes[0].set_yticks(at, list(found), fontsize=8)
+    axes[0].set_yticks(at, _words(found), fontsize=8)
     axes[0].set_ylim(len(found) - 0.5, -0.5)
     for ax in axes:
         ax.tick_params(axis="y", length=0)
@@ -91,10 +99,18 @@ def _ticks(low: float, high: float) -> list[float]:
     return next((ticks for ticks in inside if len(ticks) >= 3), inside[-1])
 
 
-def _by_contrast(effects: pa.Table) -> dict[str, dict[str, dict]]:
-    """The rows by what is compared, in words, and by outcome."""
-    found: dict[str, dict[str, dict]] = {}
+def _by_contrast(effects: pa.Table) -> dict[tuple[str, str], dict[str, dict]]:
+    """The rows by the reading and the value that are compared, and by outcome."""
+    found: dict[tuple[str, str], dict[str, dict]] = {}
     for row in effects.to_pylist():
-        words = f"{row['reading']}: {row['value']}, not {row['against']}"
-        found.setdefault(words, {})[row["outcome"]] = row
+        found.setdefault((row["reading"], row["value"]), {})[row["outcome"]] = row
     return found
+
+
+def _words(found: Mapping[tuple[str, str], Mapping[str, dict]]) -> list[str]:
+    """What is compared, in words that leave room for the drawing."""
+    against = [next(iter(rows.values()))["against"] for rows in found.values()]
+    return [
+        f"{shortened(reading, 22)}: {shortened(value, 14)}, not {shortened(other, 14)}"
+        for (reading, value), other in zip(found, against, strict=True)
+    ]
