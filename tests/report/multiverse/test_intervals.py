@@ -69,7 +69,8 @@ def test_how_many_rows_are_held_at_once_does_not_show(monkeypatch):
 
 def test_one_life_a_row_has_a_value_and_no_interval():
     got = bootstrapped_rows([np.array([[2.0]]), np.array([[1.0]])], ratio)
-    assert got.at(0) == (2.0, 2.0, 2.0)
+    assert got.at(0).value == 2.0
+    assert np.isnan(got.at(0)[1:]).all()
     with pytest.raises(ValueError, match="at least one value"):
         bootstrapped_rows([np.empty((2, 0))], lambda mean: mean)
 
