@@ -16,7 +16,7 @@ from animat.report.multiverse.readings import Readings, codes
 MOST_COLUMNS = 100
 """Columns of the dashboard; more universes than this share one."""
 
-_MARKS = {"holds": "o", "undecided": ".", "fails": "v"}
+_MARKS = {"holds": "o", "undecided": "s", "fails": "v"}
 _SHADES = LinearSegmentedColormap.from_list("shades", ["white", BLUE])
 
 
