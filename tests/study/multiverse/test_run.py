@@ -121,6 +121,26 @@ def test_a_set_that_is_found_is_confirmed_by_fresh_universes(small, tmp_path, mo
         assert told.verdict == "undecided" or told.share.value < 0.95
 
 
+def test_where_another_set_is_found_later_it_is_confirmed_beside_the_first(
+    small, lived, tmp_path, monkeypatch
+):
+    """As by a later version: what was lived of the universes is not lost for it."""
+    directory = tmp_path / "again"
+    shutil.copytree(lived.directory, directory)
+    for value, there in (("clamp", {"C1"}), ("lethal", {"C1", "C1-2"}), ("clamp", {"C1", "C1-2"})):
+        conditions = (Condition("overflow", (value,)),)
+
+        def by_hand(universes, readings, claim, conditions=conditions):
+            return SmallestSet(claim, conditions, 40, share(39, 40)) if claim == "C1" else None
+
+        monkeypatch.setattr(module, "smallest_set", by_hand)
+        found = go(small, directory, Size(confirming=4, longer=0))
+        assert found.confirmed["C1"].found.conditions == conditions
+        assert {path.name for path in (directory / "confirmation").iterdir()} == there
+    second = open_results(directory / "confirmation/C1-2")
+    assert set(second.cases["mind.overflow"].to_pylist()) == {"lethal"}
+
+
 def test_the_full_product_is_lived_in_portions(small, tmp_path, monkeypatch):
     data = json.loads(small.model_dump_json(exclude_none=True))
     over = data["design"]["sample"]["over"]
