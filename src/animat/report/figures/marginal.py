@@ -44,10 +44,11 @@ def points_figure(effects: pa.Table, claims: Sequence[str]) -> Figure:
     )
     sure = (low > 0.0) | (high < 0.0)
     ax.imshow(np.where(sure, points, 0.0), cmap=_POINTS, vmin=-1.0, vmax=1.0, aspect="auto")
-    for place, number in zip(*np.nonzero(~np.isnan(points)), strict=True):
+    for place, number in np.argwhere(~np.isnan(points)).tolist():
+        told = round(100 * float(points[place, number]))
         ax.text(
-            number, place, f"{round(100 * points[place, number]):+d}", ha="center", va="center",
-            fontsize=8, color=BLACK if sure[place, number] else _UNSURE,
+            number, place, f"{told:+d}", ha="center", va="center", fontsize=8,
+            color=BLACK if sure[place, number] else _UNSURE,
             fontweight="bold" if sure[place, number] else "normal",
         )  # fmt: skip
     ax.set_xticks(range(len(claims)), claims)
