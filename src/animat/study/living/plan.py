@@ -196,6 +196,12 @@ def plan_of(text: str) -> Plan:
     return Plan(validated(tomllib.loads(text), Study))
 
 
+def forget() -> None:
+    """Forget the plans and worlds that were made of files, which may have changed since."""
+    plan_of.cache_clear()
+    _world.cache_clear()
+
+
 def world_of(choice: WorldChoice) -> World:
     """Return the world chosen; one that is chosen again is not laid out again."""
     return _world(choice.model_dump_json(exclude_unset=True))
