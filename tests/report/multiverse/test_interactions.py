@@ -8,6 +8,11 @@ from animat.report.multiverse.interactions import strongest_interactions
 from animat.report.multiverse.marginal import Outcome
 
 
+def found_in(universes, readings):
+    rows = strongest_interactions(universes, readings).to_pylist()
+    return {(row["reading"], row["other"]) for row in rows}
+
+
 def test_the_planted_pair_is_the_only_interaction_found(planted, readings):
     rows = strongest_interactions(planted, readings).to_pylist()
     assert rows
@@ -31,6 +36,68 @@ def test_effects_that_only_add_up_are_no_interaction(make_universes, combination
     universes = make_universes(combinations(copies=3), gain)
     rows = strongest_interactions(universes, readings).to_pylist()
     assert "abundant_gain" not in {row["outcome"] for row in rows}
+
+
+def test_two_that_go_together_where_a_third_has_a_value_are_not_taken_for_it(
+    make_universes, combinations, readings
+):
+    """As in a sample of few points: a failure costs just where two others go together."""
+    every = pa.table(combinations(copies=4))
+    clamp, positive, costs = (
+        np.asarray(every[name]) == value
+        for name, value in (("overflow", "clamp"), ("gate", "positive"), ("effect", "0.2"))
+    )
+    sample = every.filter(pa.array((clamp == positive) == costs)).to_pydict()
+
+    def gain(one):
+        return 4.0 if one["effect"] == "0.2" else 1.0
+
+    assert ("overflow", "gate") not in found_in(make_universes(sample, gain), readings)
+
+
+def test_two_that_go_together_where_two_others_do_are_not_taken_for_them(
+    make_universes, combinations, readings
+):
+    """Whether cycles and gate agree is here whether overflow and effect do, but for a few."""
+    every = pa.table(combinations(copies=6))
+    clamp, positive, costs, ten = (
+        np.asarray(every[name]) == value
+        for name, value in (
+            ("overflow", "clamp"),
+            ("gate", "positive"),
+            ("effect", "0.2"),
+            ("cycles", "10"),
+        )
+    )
+    few = np.arange(every.num_rows) % 6 == 0
+    sample = every.filter(pa.array(((clamp == costs) == (positive == ten)) | few)).to_pydict()
+
+    def gain(one):
+        return 6.0 if (one["overflow"] == "clamp") == (one["effect"] == "0.2") else 1.0
+
+    found = found_in(make_universes(sample, gain), readings)
+    assert ("overflow", "effect") in found
+    assert ("gate", "cycles") not in found
+
+
+def test_what_readings_add_is_found_where_they_only_add_up():
+    rng = np.random.default_rng(5)
+    code = rng.integers(0, [2, 3, 4], size=(300, 3))
+    adds = [np.array([0.0, 1.0]), np.array([0.0, -2.0, 5.0]), np.array([1.0, 1.0, 0.0, 3.0])]
+    each = np.stack([add[had] for add, had in zip(adds, code.T, strict=True)], axis=1)
+    own, of_pairs = interactions.effects_of(code, [], 7.0 + each.sum(axis=1))
+    assert own == pytest.approx(each - each.mean(axis=0))
+    assert not of_pairs.any()
+
+
+def test_what_a_pair_adds_is_found_beside_what_its_readings_do():
+    rng = np.random.default_rng(6)
+    code = rng.integers(0, [2, 3, 4], size=(300, 3))
+    values = 3.0 * code[:, 0] + 5.0 * ((code[:, 0] == 1) & (code[:, 2] == 2))
+    own, of_pairs = interactions.effects_of(code, [(0, 2)], values)
+    assert own.sum(axis=1) + of_pairs == pytest.approx(values - values.mean())
+    without, _ = interactions.effects_of(code, [], values)
+    assert own == pytest.approx(without)
 
 
 def test_chance_alone_is_not_called_an_interaction(planted, readings):

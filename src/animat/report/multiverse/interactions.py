@@ -1,8 +1,15 @@
-"""Which readings matter to each other: the effect of one depends on the value of the other."""
+"""Which readings matter to each other: the effect of one depends on the value of the other.
+
+Universes of a sample are not all combinations. Among the points of Sobol's sequence two readings
+can go together just where a third has one of its values, or where two others do: what those do then
+looks like an interaction of the first two. So what each reading does by itself, and what stronger
+interactions do, is taken off before a pair is looked at. That the weaker of two might have been the
+true one, no such sample can tell.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations, product
 from typing import Any
 
@@ -20,6 +27,9 @@ STRONGEST = 10
 
 Groups = tuple[NDArray[np.bool_], ...]
 
+Pair = tuple[int, int]
+"""The places of two readings."""
+
 
 def strongest_interactions(
     universes: pa.Table, readings: Readings, most: int = STRONGEST
@@ -32,20 +42,26 @@ def strongest_interactions(
     `effect_here`, `effect_against` and `interaction`, `low`, `high` (a difference of points, a
     factor between factors, or a difference). Intervals are simultaneous: wide enough for all
     pairs at once (Bonferroni). A row is given only where the interval excludes that there is no
-    interaction; of two readings only the pair of values that shows most.
+    interaction; of two readings only the pair of values that shows most. The surest is found first,
+    and what it does is taken off before the next one is looked for.
     """
     code = codes(universes, readings)
     pairs = list(_pairs(code, readings))
     rows = []
     for outcome in outcomes(universes):
-        told: dict[tuple[str, str], dict[str, Any]] = {}
-        for names, groups in pairs:
-            row = _interaction(outcome, groups, len(pairs))
-            key = (names["reading"], names["other"])
-            if row["sure"] > told.get(key, {"sure": 0.0})["sure"]:
-                told[key] = {"outcome": outcome.name, "scale": outcome.scale, **names, **row}
-        best = sorted(told.values(), key=lambda row: -row["sure"])[:most]
-        rows += [{name: row[name] for name in SCHEMA.names} for row in best]
+        told: dict[Pair, dict[str, Any]] = {}
+        while len(told) < most:
+            own, of_pairs = effects_of(code, list(told), outcome.values)
+            surest: dict[str, Any] = {"sure": 0.0}
+            for pair, names, groups in pairs:
+                others = np.delete(own, pair, axis=1).sum(axis=1) + of_pairs
+                row = _interaction(outcome, others, groups, len(pairs))
+                if pair not in told and row["sure"] > surest["sure"]:
+                    surest = {"pair": pair, **names, **row}
+            if not surest["sure"]:
+                break
+            told[surest["pair"]] = {"outcome": outcome.name, "scale": outcome.scale, **surest}
+        rows += [{name: row[name] for name in SCHEMA.names} for row in told.values()]
     return pa.Table.from_pylist(rows, SCHEMA)
 
 
@@ -60,7 +76,42 @@ SCHEMA = pa.schema(
 )
 
 
-def _pairs(code: NDArray[np.int64], readings: Readings) -> Iterator[tuple[dict[str, str], Groups]]:
+def effects_of(
+    code: NDArray[np.int64], pairs: Sequence[Pair], values: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """What each reading adds to the values [U] of universes, [U, F], and what some pairs add, [U].
+
+    By least squares: first as if readings only added up, then what is left by the pairs. On average
+    each adds nothing. `code` is [U, F].
+    """
+    each = [_levels(had) for had in code.T]
+    alone = np.concatenate(each, axis=1)
+    weights = _fitted(alone, values - values.mean())
+    ends = np.cumsum([levels.shape[1] for levels in each])[:-1]
+    parts = zip(each, np.split(weights, ends), strict=True)
+    own = np.stack([levels @ weight for levels, weight in parts], axis=1)
+    if not pairs:
+        return own, np.zeros(len(values))
+    both = np.concatenate(
+        [_levels(code[:, one] * (code.max() + 1) + code[:, other]) for one, other in pairs], axis=1
+    )
+    both -= alone @ _fitted(alone, both)
+    return own, both @ _fitted(both, values - values.mean() - own.sum(axis=1))
+
+
+def _levels(had: NDArray[np.int64]) -> NDArray[np.float64]:
+    """A column for each of the values that universes have [U], 1 where they have it, centred."""
+    levels = np.equal.outer(had, np.unique(had)).astype(np.float64)
+    return levels - levels.mean(axis=0)
+
+
+def _fitted(columns: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.asarray(np.linalg.lstsq(columns, values, rcond=1e-9)[0], dtype=np.float64)
+
+
+def _pairs(
+    code: NDArray[np.int64], readings: Readings
+) -> Iterator[tuple[Pair, dict[str, str], Groups]]:
     """Yield what is compared with what, and its four groups: both, first, other, neither."""
     names = list(readings)
     for one, other in combinations(range(len(names)), 2):
@@ -78,6 +129,7 @@ def _pairs(code: NDArray[np.int64], readings: Readings) -> Iterator[tuple[dict[s
             groups = tuple(mask & kept for mask in masks)
             if all(group.sum() >= FEWEST for group in groups):
                 yield (
+                    (one, other),
                     {
                         "reading": names[one],
                         "value": readings[names[one]][value],
@@ -90,10 +142,18 @@ def _pairs(code: NDArray[np.int64], readings: Readings) -> Iterator[tuple[dict[s
                 )
 
 
-def _interaction(outcome: Outcome, groups: Groups, tests: int) -> dict[str, float]:
-    """The double difference of the four means, and how far from nothing it surely is."""
+def _interaction(
+    outcome: Outcome, of_others: NDArray[np.float64], groups: Groups, tests: int
+) -> dict[str, float]:
+    """The double difference of the four means, and how far from nothing it surely is.
+
+    The means are without what other readings and pairs add, `of_others` [U]; the interval is as
+    wide as if they were with it.
+    """
     parts = [outcome.values[group] for group in groups]
-    both, first, other, neither = (float(part.mean()) for part in parts)
+    both, first, other, neither = (
+        float((outcome.values - of_others)[group].mean()) for group in groups
+    )
     half = _half_width(parts, 1.0 - (1.0 - LEVEL) / (2 * tests), outcome.scale == "points")
     here, against = both - other, first - neither
     between = here - against
