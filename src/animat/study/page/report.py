@@ -22,7 +22,6 @@ from animat.study.page.how_run import how_run_section, notices
 from animat.study.page.methods import model_words, representatives
 from animat.study.reproduction.readings import readings
 from animat.study.store.results import Results
-from animat.study.store.store import STUDY
 
 PAGE = "report.html"
 
@@ -65,7 +64,7 @@ def write_report(
         Section(
             "The study file",
             ["With every setting written out; animat run makes the same lives of it again."],
-            code=(results.directory / STUDY).read_text("utf-8"),
+            code=results.text,
         ),
     ]
     write_page(
