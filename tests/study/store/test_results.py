@@ -111,8 +111,10 @@ def test_the_study_is_the_study(small, finished):
 
 
 def test_nothing_is_no_results(tmp_path):
-    with pytest.raises(SettingsError, match="is no results directory"):
+    with pytest.raises(SettingsError, match=r"is no results directory: it has no manifest\.json"):
         animat.study.open(tmp_path)
+    with pytest.raises(SettingsError, match="none: no such directory"):
+        animat.study.open(tmp_path / "none")
 
 
 @pytest.mark.parametrize(

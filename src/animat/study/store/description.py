@@ -72,6 +72,8 @@ def read_manifest(directory: Path) -> dict[str, Any]:
         _Manifest.model_validate_json(content)
         return json.loads(content)
     except OSError:
+        if not directory.exists():
+            raise SettingsError(f"{directory}: no such directory") from None
         why = f"it has no {MANIFEST}"
     except ValueError:
         why = f"it has no whole {MANIFEST}; without that file, {WRITTEN_ANEW}"
