@@ -14,6 +14,11 @@ from animat.study.store import description
 from animat.study.store.description import differences_from, read_manifest
 from animat.study.store.results import Results
 from animat.study.store.store import open_store
+from animat.study.store.verify import verify
+
+
+def telling(task: str, done: int, total: int, note: str = "") -> None:
+    """Tell nobody."""
 
 
 @pytest.fixture
@@ -79,8 +84,13 @@ def test_a_file_that_has_changed_is_refused_and_its_copy_kept(faults, tmp_path):
     own.write_text(WALK.format(number=2))
     (line,) = differences_from(directory, faults.plan(text + "# read again\n"))
     assert line == f"{own} has changed since; as it was it is in {directory / 'inputs'}"
+    assert verify(Results(directory), telling).problems == [line]
     (copy,) = (directory / "inputs").iterdir()
     assert copy.read_text() == WALK.format(number=1)
+    own.unlink()
+    gone = f"{own} is not there any more; as it was it is in {directory / 'inputs'}"
+    assert differences_from(directory, faults.plan(text)) == [gone]
+    assert verify(Results(directory), telling).problems == [gone]
     shutil.copy(copy, own)
     assert differences_from(directory, faults.plan(text)) == []
 
@@ -90,7 +100,7 @@ def test_lives_that_became_others_for_reasons_unknown_are_refused(small, copied)
     other = cases.set_column(cases.schema.get_field_index("identity"), "identity", [["a", "b"]])
     pq.write_table(other, copied / "cases.parquet")
     (line,) = differences_from(copied, small)
-    assert line.startswith("its lives are not those that this animat lives")
+    assert line.startswith("its lives are not those that are lived now of the same study")
 
 
 @pytest.mark.parametrize(
@@ -183,4 +193,4 @@ def test_lives_that_are_numbered_otherwise_are_refused(small, copied):
     manifest["lives"]["in_a_part"] += 1
     (copied / "manifest.json").write_text(json.dumps(manifest))
     (line,) = differences_from(copied, small)
-    assert line.startswith("its lives are not those that this animat lives")
+    assert line.startswith("its lives are not those that are lived now of the same study")

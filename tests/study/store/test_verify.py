@@ -153,7 +153,7 @@ def test_a_study_or_cases_that_have_changed_are_found(copied):
     assert problem.startswith(f"{study}: has changed since")
     study.write_text(text)
     cases = copied / "cases.parquet"
-    pq.write_table(pq.read_table(cases).slice(1), cases)
+    pq.write_table(pq.read_table(cases).drop_columns("mind.agent"), cases)
     assert looked(copied).problems == [f"{cases}: has other cases than the study"]
 
 
@@ -171,6 +171,14 @@ def test_what_tells_of_the_study_is_looked_at(copied):
     columns.unlink()
     (problem,) = looked(copied).problems
     assert problem.startswith(f"{columns}: is missing or torn; animat run")
+
+
+def test_lives_that_are_others_now_are_told_of(copied):
+    cases = pq.read_table(copied / "cases.parquet")
+    other = cases.set_column(cases.schema.get_field_index("identity"), "identity", [["a", "b"]])
+    pq.write_table(other, copied / "cases.parquet")
+    (problem,) = looked(copied).problems
+    assert problem.startswith(f"{copied}: its lives are not those that are lived now")
 
 
 def test_a_copy_of_a_file_that_is_none_any_more_is_found(faults, tmp_path):

@@ -33,6 +33,10 @@ COLUMNS = "_common_metadata"
 INPUTS = "inputs"
 FOLDERS = ("lives", "teachers", "curves", "traces", INPUTS)
 
+OTHER_LIVES = (
+    "its lives are not those that are lived now of the same study: animat has changed, or what a"
+    " function of your own calls"
+)
 WRITTEN_ANEW = "animat run with the same study writes it anew"
 
 _Count = Annotated[int, Field(ge=0)]
@@ -142,7 +146,7 @@ def begin(directory: Path, plan: Plan) -> None:
             "engine": ENGINE,
             **{kind: plan.numbering[kind].written() for kind in KINDS},
             "steps_to_learn": plan.steps_to_learn,
-            "inputs": inputs_of(plan),
+            "inputs": _inputs(plan),
             "runs": [],
         }
     _describe(directory, plan)
@@ -164,12 +168,8 @@ def differences_from(directory: Path, plan: Plan) -> list[str]:
         there = _text_there(directory)
         was = there if there and text_hash(there) == manifest["hash"] else None
         return _differences_of_texts(was, plan.text)
-    now = inputs_of(plan)
-    changed = [path for path, copy in manifest["inputs"].items() if now.get(path) != copy]
-    if changed:
-        return [
-            f"{path} has changed since; as it was it is in {directory / INPUTS}" for path in changed
-        ]
+    if changed := changed_inputs(directory, manifest):
+        return changed
     try:
         identities = read_cases(directory)["identity"].to_pylist()
     except SettingsError:
@@ -177,8 +177,24 @@ def differences_from(directory: Path, plan: Plan) -> list[str]:
         identities = plan.identities
     numbered = {kind: plan.numbering[kind].written() for kind in KINDS}
     if identities != plan.identities or any(manifest[kind] != numbered[kind] for kind in KINDS):
-        return ["its lives are not those that this animat lives of the same study"]
+        return [OTHER_LIVES]
     return []
+
+
+def changed_inputs(directory: Path, manifest: dict[str, Any]) -> list[str]:
+    """Return a line for every file of the user's that is not any more as it was."""
+    lines = []
+    for path, copy in manifest["inputs"].items():
+        there = Path(path).is_file()
+        if not there or name_of_copy(Path(path)) != copy:
+            what = "has changed since" if there else "is not there any more"
+            lines.append(f"{path} {what}; as it was it is in {directory / INPUTS}")
+    return lines
+
+
+def name_of_copy(path: Path, name: str | None = None) -> str:
+    """Return what the copy of a file is called: by its content, and its name unless given."""
+    return f"{hashlib.sha256(path.read_bytes()).hexdigest()[:8]}-{name or path.name}"
 
 
 def text_hash(text: str) -> str:
@@ -215,7 +231,7 @@ def _describe(directory: Path, plan: Plan) -> None:
     for folder in _folders(plan):
         (directory / folder).mkdir(exist_ok=True)
     sync_directory(directory)
-    for path, copy in inputs_of(plan).items():
+    for path, copy in _inputs(plan).items():
         _see_to_it(directory / INPUTS / copy, Path(path).read_bytes())
     _see_to_it(directory / STUDY, plan.text.encode())
     cases = io.BytesIO()
@@ -240,12 +256,9 @@ def _folders(plan: Plan) -> list[str]:
     return [folder for folder in FOLDERS if needed[folder]]
 
 
-def inputs_of(plan: Plan) -> dict[str, str]:
+def _inputs(plan: Plan) -> dict[str, str]:
     """Return the files a study draws on beside its own, each with the name of its copy."""
-    return {
-        path: f"{hashlib.sha256(Path(path).read_bytes()).hexdigest()[:8]}-{Path(path).name}"
-        for path in sorted(plan.inputs)
-    }
+    return {path: name_of_copy(Path(path)) for path in sorted(plan.inputs)}
 
 
 def _see_to_it(path: Path, content: bytes) -> None:

@@ -34,8 +34,10 @@ from animat.study.store.description import (
     COLUMNS,
     FOLDERS,
     INPUTS,
+    OTHER_LIVES,
     WRITTEN_ANEW,
-    inputs_of,
+    changed_inputs,
+    name_of_copy,
     read_columns,
     read_text,
 )
@@ -73,13 +75,17 @@ def verify(results: Results, tell: Telling) -> Verified:
         text = read_text(directory, results.manifest)
     except SettingsError as error:
         return Verified(0, 0, 0, list(error.problems))
+    if changed := changed_inputs(directory, results.manifest):
+        return Verified(0, 0, 0, changed)
     plan = plan_of(text)
+    if results.cases["identity"].to_pylist() != plan.identities:
+        return Verified(0, 0, 0, [f"{directory}: {OTHER_LIVES}"])
     if not results.cases.equals(plan.case_table()):
         return Verified(0, 0, 0, [f"{directory / CASES}: has other cases than the study"])
     problems: list[str] = []
     good: set[Part] = set()
     parts = list(plan.all_parts())
-    problems += _wrong_descriptions(directory, plan)
+    problems += _wrong_descriptions(results, plan)
     problems += _strays(directory, plan, parts)
     for part in parts:
         found = _read_again(directory, plan, part)
@@ -94,8 +100,9 @@ def verify(results: Results, tell: Telling) -> Verified:
     return Verified(len(good), len(parts), len(sample), problems)
 
 
-def _wrong_descriptions(directory: Path, plan: Plan) -> Iterator[str]:
+def _wrong_descriptions(results: Results, plan: Plan) -> Iterator[str]:
     """Yield what is wrong with the columns told, and with the copies of the user's files."""
+    directory = results.directory
     for kind in KINDS:
         try:
             columns = read_columns(directory, kind)
@@ -104,9 +111,9 @@ def _wrong_descriptions(directory: Path, plan: Plan) -> Iterator[str]:
             continue
         if plan.numbering[kind].total and not columns.equals(schema(plan, kind)):
             yield f"{directory / kind / COLUMNS}: has other columns than the study; {WRITTEN_ANEW}"
-    for path, copy in inputs_of(plan).items():
+    for path, copy in results.manifest["inputs"].items():
         kept = directory / INPUTS / copy
-        if not kept.is_file() or kept.read_bytes() != Path(path).read_bytes():
+        if not kept.is_file() or name_of_copy(kept, Path(path).name) != copy:
             yield f"{kept}: is no copy of {path} any more; {WRITTEN_ANEW}"
 
 
