@@ -10,7 +10,7 @@ import pytest
 
 import animat
 
-HEAVY = {"numba", "llvmlite", "scipy", "matplotlib", "pyarrow", "jinja2"}
+HEAVY = {"numba", "llvmlite", "scipy", "matplotlib", "pyarrow", "jinja2", "dask", "distributed"}
 
 
 def loaded_by(code: str) -> set[str]:

@@ -61,6 +61,18 @@ def test_it_says_what_it_runs_and_what_came_out_and_only_analyses_again(
     assert [part.stat().st_mtime_ns for part in parts] == times
 
 
+def test_universes_that_were_lived_by_run_are_not_lived_again(animat_says, briefly, tmp_path):
+    asked = [*SMALL, "--set", "design.sample.points=8"]
+    assert animat_says("run", "multiverse", *asked, "--out", "mine/universes")[0] == 0
+    parts = sorted((tmp_path / "mine/universes").rglob("part-*"))
+    times = [part.stat().st_mtime_ns for part in parts]
+    code, _, _ = animat_says("multiverse", *asked, "--out", "mine")
+    assert code == 0
+    assert sorted((tmp_path / "mine/universes").rglob("part-*")) == parts != []
+    assert [part.stat().st_mtime_ns for part in parts] == times
+    assert (tmp_path / "mine/report.html").exists()
+
+
 def test_a_directory_of_another_multiverse_is_left_as_it_is(animat_says, briefly, tmp_path):
     asked = ["multiverse", *SMALL, "--set", "design.sample.points=8", "--quick", "--out", "mine"]
     assert animat_says(*asked)[0] == 0

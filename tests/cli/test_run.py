@@ -221,3 +221,20 @@ def test_ctrl_c_twice_stops_at_once(file, tmp_path):
     assert run.returncode == 130
     assert err.endswith("animat: interrupted; nothing is half-written\n")
     assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--jobs", "2"], "--jobs: belongs to --cluster with a batch system"),
+        (["--cluster", "tcp://a:1", "--jobs", "2"], "--jobs: only a batch system has jobs"),
+        (["--cluster", "tcp://a:1", "--threads", "2"], "--threads: is for this machine"),
+        (["--cluster", "a:1"], '--cluster "a:1": must be tcp://HOST:PORT'),
+    ],
+)
+def test_what_does_not_go_with_a_cluster_is_refused(animat, file, options, told):
+    said = animat("run", "tiny.toml", *options)
+    assert said.code == 2
+    assert said.err.startswith(f"animat: {told}")
+    assert len(said.err.splitlines()) == 1
+    assert not Path("results").exists()

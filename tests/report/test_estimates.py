@@ -93,8 +93,9 @@ def test_what_does_not_vary_has_no_width():
     assert mean(np.full(20, 5.0)) == (5.0, 5.0, 5.0)
 
 
-def test_one_value_has_no_interval_if_the_other_sample_varies():
-    got = ratio_of_means(np.array([4.0]), np.array([1.0, 3.0]), paired=False)
+@pytest.mark.parametrize("other", [[1.0, 3.0], [2.0, 2.0], [2.0]])
+def test_one_value_has_no_interval_whatever_the_other_sample(other):
+    got = ratio_of_means(np.array([4.0]), np.array(other), paired=False)
     assert got.value == 2.0
     assert np.isnan([got.low, got.high]).all()
 

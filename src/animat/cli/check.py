@@ -5,12 +5,10 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from animat.cli.app import app
-from animat.cli.options import Debug, compiling_told
+from animat.cli.options import Debug, Set, StudyFile, compiling_told
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -26,14 +24,6 @@ FIRST, LAST = 12, 4
 
 COLUMNS = 6
 """Factors that have a column each; more are told in one."""
-
-StudyFile = Annotated[
-    str, typer.Argument(metavar="STUDY", help="A study file, or a study that comes with animat.")
-]
-Set = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change a line of the file; again for more."),
-]
 
 
 @app.command()

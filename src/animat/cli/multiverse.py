@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from animat.cli.app import DONE, FAILED, INTERRUPTED, app
-from animat.cli.check import Set
-from animat.cli.options import Debug, Out, Quick, Threads, compiling_told
+from animat.cli.app import DONE, INTERRUPTED, app
+from animat.cli.options import Debug, Out, Quick, Set, StudyFile, Threads, compiling_told
 
 if TYPE_CHECKING:
     from animat.study.design.study import Study
@@ -30,9 +29,7 @@ CONFIRMED_QUICKLY = 60
 
 @app.command()
 def multiverse(
-    study: Annotated[
-        str, typer.Argument(help="The study: a .toml file, or the one that comes with animat.")
-    ] = "multiverse",
+    study: StudyFile = "multiverse",
     universes: Annotated[
         int | None, typer.Option(help="About how many universes; 1,922 unless given.", min=1)
     ] = None,
@@ -58,8 +55,6 @@ def multiverse(
     from animat.study.multiverse.universes import readings_of
     from animat.study.provenance import provenance
     from animat.study.running.run import threads as workers_of
-    from animat.study.store.lock import HeldError
-    from animat.study.store.store import StoreError
 
     asked = read_study(study_file(study), [*(QUICK if quick else ()), *(changes or ())])
     readings_of(asked)
@@ -80,9 +75,6 @@ def multiverse(
     except InterruptedStudyError as error:
         print(f"animat: interrupted; the same command goes on with {error}", file=sys.stderr)
         return INTERRUPTED
-    except (HeldError, StoreError) as error:
-        print(f"animat: {error}", file=sys.stderr)
-        return FAILED
     _print(found)
     print(f"{time.monotonic() - started:.0f} s; open {directory / 'report.html'}")
     return DONE

@@ -1,4 +1,4 @@
-"""What several commands take: settings, a seed, and word of a compilation."""
+"""What several commands take, and word of a compilation."""
 
 from __future__ import annotations
 
@@ -16,6 +16,13 @@ if TYPE_CHECKING:
 SettingsFile = Annotated[
     Path | None,
     typer.Option("--settings", help="A TOML file with [mind] and [robot] settings."),
+]
+StudyFile = Annotated[
+    str, typer.Argument(metavar="STUDY", help="A study file, or a study that comes with animat.")
+]
+Set = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change a line of the file; again for more."),
 ]
 ResultsDirectory = Annotated[
     Path, typer.Argument(metavar="DIR", help="The results directory of a study.")

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import sys
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from animat.cli.app import DONE, FAILED, INTERRUPTED, app
-from animat.cli.options import Debug, compiling_told
+from animat.cli.options import Debug, Out, Set, StudyFile, Threads, compiling_told
 
 if TYPE_CHECKING:
     from animat.study.living.plan import Plan
-    from animat.study.running.run import Outcome
+    from animat.study.running.run import Outcome, Workers
 
 SHOWN = 3
 """Lives that failed of which the error is shown."""
@@ -21,17 +22,20 @@ SHOWN = 3
 
 @app.command()
 def run(
-    study: Annotated[
-        str, typer.Argument(help="A study's .toml file, or the name of one that comes with animat.")
-    ],
-    out: Annotated[
-        Path | None, typer.Option(help="The results directory; results/NAME unless given.")
+    study: StudyFile,
+    out: Out = None,
+    changes: Set = None,
+    threads: Threads = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            metavar="WHERE",
+            help="Live on a cluster: tcp://HOST:PORT of a Dask scheduler, or slurm, pbs, ...",
+        ),
     ] = None,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="Another value for a key: KEY=VALUE.")
-    ] = None,
-    threads: Annotated[
-        int | None, typer.Option(help="Threads; as many as cores unless given.", min=1)
+    jobs: Annotated[
+        int | None,
+        typer.Option(help="Jobs a batch system is asked for; one unless given.", min=1),
     ] = None,
     debug: Debug = False,
 ) -> int:
@@ -42,17 +46,32 @@ def run(
     from animat.study.living.plan import plan_of
     from animat.study.running.livable import check_livable
     from animat.study.running.run import run as live
-    from animat.study.running.run import threads as workers_of
     from animat.study.store.description import MANIFEST
 
-    plan = plan_of(read_study(study_file(study), set_ or ()).to_toml())
+    plan = plan_of(read_study(study_file(study), changes or ()).to_toml())
     directory = out or Path("results") / plan.study.name
     _say_what(plan, directory)
-    with compiling_told(), telling() as tell, workers_of(threads) as workers:
+    with compiling_told(), telling() as tell, _workers(plan, threads, cluster, jobs) as workers:
         if not (directory / MANIFEST).exists():
             check_livable(plan)
         outcome = live(plan, directory, workers, tell)
     return _say_how_it_ended(outcome, directory)
+
+
+def _workers(
+    plan: Plan, count: int | None, where: str | None, jobs: int | None
+) -> AbstractContextManager[Workers]:
+    from animat.settings import SettingsError
+    from animat.study.running.cluster import cluster
+    from animat.study.running.run import threads
+
+    if where is None:
+        if jobs is not None:
+            raise SettingsError("--jobs: belongs to --cluster with a batch system")
+        return threads(count)
+    if count is not None:
+        raise SettingsError("--threads: is for this machine; workers of a cluster have their own")
+    return cluster(where, plan, lambda line: print(f"animat: {line}", file=sys.stderr), jobs)
 
 
 def _say_what(plan: Plan, directory: Path) -> None:

@@ -4,22 +4,16 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
 
-import typer
-
-from animat.cli.app import DONE, FAILED, INTERRUPTED, app
-from animat.cli.check import Set
-from animat.cli.options import Debug, Out, Quick, Threads, compiling_told
+from animat.cli.app import DONE, INTERRUPTED, app
+from animat.cli.options import Debug, Out, Quick, Set, StudyFile, Threads, compiling_told
 
 QUICK = ("lives=4", "steps=5_000", "teacher.steps=20_000", "design.sample.points=4")
 
 
 @app.command()
 def sensitivity(
-    study: Annotated[
-        str, typer.Argument(help="The study: a .toml file, or the one that comes with animat.")
-    ] = "sensitivity",
+    study: StudyFile = "sensitivity",
     out: Out = None,
     changes: Set = None,
     threads: Threads = None,
@@ -36,19 +30,13 @@ def sensitivity(
     from animat.study.running.run import threads as workers_of
     from animat.study.sensitivity import check, publish, short
     from animat.study.sensitivity import sensitivity as indices_of
-    from animat.study.store.lock import HeldError
     from animat.study.store.results import open as open_results
-    from animat.study.store.store import StoreError
 
     asked = read_study(study_file(study), [*(QUICK if quick else ()), *(changes or ())])
     check(asked)
     directory = out or Path("results") / asked.name
-    try:
-        with compiling_told(), telling() as tell, workers_of(threads) as workers:
-            outcome = run(Plan(asked), directory, workers, tell)
-    except (HeldError, StoreError) as error:
-        print(f"animat: {error}", file=sys.stderr)
-        return FAILED
+    with compiling_told(), telling() as tell, workers_of(threads) as workers:
+        outcome = run(Plan(asked), directory, workers, tell)
     if not outcome.complete:
         print(f"animat: the same command goes on with {directory}", file=sys.stderr)
         return INTERRUPTED

@@ -62,18 +62,19 @@ def bootstrapped(
 
     `samples` are arrays [n_i]; with `paired` all of one length, entry k of each belonging
     together, and resampled together. `method` None takes BCa up to `BCA_LIMIT` values and
-    percentiles beyond. A sample in which nothing varies has an interval of no width.
+    percentiles beyond. Samples in which nothing varies have an interval of no width, a single value
+    has none that is known.
     Raises ValueError if a sample is empty.
     """
     if any(len(sample) == 0 for sample in samples):
         raise ValueError("an estimate needs at least one value in every sample")
     value = float(statistic(*samples, axis=-1))
+    if min(len(sample) for sample in samples) < 2:
+        return Estimate(value, float("nan"), float("nan"))
     if all(np.all(sample == sample[0]) for sample in samples):
         return Estimate(value, value, value)
     largest = max(len(sample) for sample in samples)
     chosen = method or ("BCa" if largest <= BCA_LIMIT else "percentile")
-    if min(len(sample) for sample in samples) < 2:
-        return Estimate(value, float("nan"), float("nan"))
     interval = _interval(samples, statistic, paired, seed, resamples, chosen)
     if chosen == "BCa" and not np.all(np.isfinite(interval)):
         # BCa has no answer when every resample lies on one side of the value.

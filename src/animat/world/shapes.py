@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +40,7 @@ def polygon(shape: Shape, size_mm: float | None = None) -> NDArray[np.float64]:
     if size_mm is None or not (math.isfinite(size_mm) and size_mm > 0):
         raise ValueError(f"size_mm is {size_mm}; a regular shape needs a size above 0 mm")
     apothem = size_mm / math.sqrt(12.0) if sides == SIDES["triangle"] else size_mm / 2
-    return _regular(sides, apothem)
+    return _regular(sides, apothem).copy()
 
 
 def area_and_centroid(corners: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
@@ -54,6 +55,7 @@ def area_and_centroid(corners: NDArray[np.float64]) -> tuple[float, NDArray[np.f
     return area, origin + ((here + there) * cross[:, None]).sum(axis=0) / (6 * area)
 
 
+@lru_cache(maxsize=256)
 def _regular(sides: int, apothem: float) -> NDArray[np.float64]:
     half_step = math.pi / sides
     corners = np.tile((1.0, 0.0), (sides, 1))

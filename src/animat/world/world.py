@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib.resources import as_file, files
 from pathlib import Path
 
@@ -153,6 +153,7 @@ class World:
         return _raster(self, float(horizon))
 
     @classmethod
+    @cache
     def _published(cls, name: str) -> World:
         with as_file(files("animat.world") / "data" / name) as path:
             return cls.load(path)

@@ -4,7 +4,7 @@ import pytest
 from matplotlib.colors import to_rgba
 
 from animat.report.figures.marginal import factors_figure, points_figure
-from animat.report.figures.style import BLUE, GREY
+from animat.report.figures.style import BLUE
 
 GAINS = {"gain": "factor on the abundant gain", "other": "factor on the scarce gain"}
 
@@ -26,11 +26,34 @@ def test_points_are_told_and_those_that_may_be_nothing_are_grey(effects, legible
     fig = points_figure(effects, ["C1"])
     (ax,) = fig.axes
     assert [text.get_text() for text in ax.texts] == ["-49", "+0"]
-    assert [text.get_color() == GREY for text in ax.texts] == [False, True]
+    assert [text.get_fontweight() == "bold" for text in ax.texts] == [True, False]
     rows = [label.get_text() for label in ax.get_yticklabels()]
     assert rows == ["overflow: lethal, not clamp", "overflow: burst, not clamp"]
-    np.testing.assert_allclose(ax.images[0].get_array(), [[-0.49], [0.001]])
+    np.testing.assert_allclose(ax.images[0].get_array(), [[-0.49], [0.0]])
     legible(fig)
+
+
+def luminance(colour):
+    """How light a colour is, by the Web Content Accessibility Guidelines."""
+    rgb = np.array(to_rgba(colour)[:3])
+    return np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4) @ (
+        0.2126, 0.7152, 0.0722,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("width", [0.0, 2.0])
+def test_every_number_stands_out_from_its_ground(width):
+    rows = [
+        {"reading": "overflow", "value": f"{effect}", "against": "clamp", "outcome": "C1",
+         "effect": effect, "low": effect - width, "high": effect + width}
+        for effect in np.linspace(-1.0, 1.0, 21)
+    ]  # fmt: skip
+    (ax,) = points_figure(pa.Table.from_pylist(rows), ["C1"]).axes
+    (image,) = ax.images
+    grounds = image.to_rgba(image.get_array())[:, 0]
+    for text, ground in zip(ax.texts, grounds, strict=True):
+        dark, light = sorted([luminance(text.get_color()), luminance(ground)])
+        assert (light + 0.05) / (dark + 0.05) > 4.0
 
 
 def test_factors_have_their_intervals_on_a_logarithmic_axis(effects, legible):
@@ -54,3 +77,17 @@ def test_what_could_not_be_compared_is_left_blank(effects, legible):
         legible(factors_figure(table, GAINS))
         legible(points_figure(table, ["C1"]))
     assert not points_figure(pa.Table.from_pylist(nothing), ["C1"]).axes[0].texts
+
+
+def test_long_words_leave_room_for_the_drawing(effects, legible):
+    rows = [
+        {**row, "reading": "what is meant by overflow " * 3, "against": "clamped at its bound " * 2}
+        for row in effects.to_pylist()
+    ]
+    table = pa.Table.from_pylist(rows)
+    for fig in (points_figure(table, ["C1"]), factors_figure(table, GAINS)):
+        legible(fig)
+        assert all(ax.get_window_extent().width > 0.12 * fig.bbox.width for ax in fig.axes)
+        lethal, burst = (label.get_text() for label in fig.axes[0].get_yticklabels())
+        assert "lethal" in lethal
+        assert "burst" in burst

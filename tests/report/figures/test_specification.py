@@ -58,3 +58,16 @@ def test_the_dashboard_shows_where_each_value_was_taken(monkeypatch, most):
     np.testing.assert_allclose(shares[lethal], np.repeat([1.0, 0.0], columns // 2))
     np.testing.assert_allclose(shares[clamp], np.repeat([0.0, 1.0], columns // 2))
     np.testing.assert_allclose(shares[2:].sum(axis=0), 1.0)
+
+
+def test_long_words_leave_room_for_the_drawing(legible):
+    long = {
+        name: name if name not in READINGS else "what is meant by it " * 3 + name
+        for name in universes().column_names
+    }
+    table = universes().rename_columns(long)
+    words = {long[name]: values for name, values in READINGS.items()}
+    fig = specification_figure(table, words, "gain", "C1", label="AF / BLIND")
+    legible(fig)
+    assert all(ax.get_window_extent().width > 0.4 * fig.bbox.width for ax in fig.axes)
+    assert "lethal" in fig.axes[1].get_yticklabels()[1].get_text()

@@ -33,3 +33,10 @@ def test_the_whisker_is_of_what_holds_and_the_diamond_is_by_value():
     whisker, diamond = ax.lines[:2]
     np.testing.assert_allclose(whisker.get_xdata(), [0.45, 0.525])
     np.testing.assert_allclose(diamond.get_xdata(), [0.55])
+
+
+def test_a_diamond_at_the_end_of_the_axis_is_whole():
+    (ax,) = verdicts_figure(shares((0.0, 0.0, 1.0), (0.9, 0.1, 0.0)), CLAIMS).axes
+    diamonds = [line for line in ax.lines if line.get_marker() == "D"]
+    assert len(diamonds) == 2
+    assert not any(diamond.get_clip_on() for diamond in diamonds)

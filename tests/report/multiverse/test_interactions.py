@@ -1,8 +1,11 @@
 import numpy as np
 import pyarrow as pa
 import pytest
+from scipy import stats
 
+from animat.report.multiverse import interactions
 from animat.report.multiverse.interactions import strongest_interactions
+from animat.report.multiverse.marginal import Outcome
 
 
 def test_the_planted_pair_is_the_only_interaction_found(planted, readings):
@@ -40,6 +43,35 @@ def test_chance_alone_is_not_called_an_interaction(planted, readings):
         found += "C2" in told.column("outcome").to_pylist()
     # At 95 % for all pairs together one in 20 is expected; three in 10 has a chance of 1 %.
     assert found < 3
+
+
+def test_of_few_universes_chance_is_not_called_an_interaction_either(
+    planted, readings, monkeypatch
+):
+    """Of four groups of a few universes each the means are far apart by chance now and then."""
+    monkeypatch.setattr(interactions, "outcomes", lambda universes: [chance(universes)])
+    rng = np.random.default_rng(2)
+
+    def chance(universes):
+        return Outcome("chance", "difference", rng.normal(size=universes.num_rows))
+
+    found = 0
+    for _ in range(60):
+        few = planted.take(pa.array(rng.permutation(planted.num_rows)[:30]))
+        found += strongest_interactions(few, readings).num_rows > 0
+    # One in 20 is expected at most; more than seven in 60 has a chance of 1 %.
+    assert found <= 7
+
+
+def test_an_interval_of_two_of_the_groups_is_welchs():
+    """Where two groups do not vary, the interaction is a difference of two means."""
+    rng = np.random.default_rng(3)
+    one, other = rng.normal(2.0, 1.0, 6), rng.normal(0.0, 3.0, 9)
+    parts = [one, other, np.zeros(4), np.zeros(5)]
+    welch = stats.ttest_ind(one, other, equal_var=False).confidence_interval(0.95)
+    half = interactions._half_width(parts, 0.975, of_shares=False)
+    assert half == pytest.approx((welch.high - welch.low) / 2)
+    assert interactions._half_width([np.ones(3)] * 4, 0.975, of_shares=False) == 0.0
 
 
 def test_no_more_than_asked_for_are_told(planted, readings):

@@ -1,10 +1,16 @@
 import numpy as np
+import pyarrow as pa
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from animat.report.multiverse.marginal import difference, marginal_effects, outcomes
+from animat.report.multiverse.marginal import (
+    difference,
+    largest_imbalance,
+    marginal_effects,
+    outcomes,
+)
 from animat.report.multiverse.universes import CLAIMS, EFFECTS
 
 
@@ -94,3 +100,21 @@ def test_a_ratio_is_told_by_its_logarithm(planted):
     np.testing.assert_allclose(by_name["abundant_gain"].values, np.log(gain))
     assert by_name["learning_error"].scale == "difference"
     assert set(by_name["C1"].values.tolist()) <= {0.0, 1.0}
+
+
+def test_what_is_shared_out_unevenly_is_told(planted, readings):
+    """Every combination is there as often as any other, until some are taken away."""
+    assert largest_imbalance(planted, readings).points == 0.0
+    rows = planted.select(["gate", "cycles"]).to_pylist()
+    both = [row == {"gate": "always", "cycles": "1"} for row in rows]
+    some = np.cumsum(both) <= np.sum(both) / 2
+    told = largest_imbalance(planted.filter(pa.array(~np.array(both) | some)), readings)
+    # A half of those with one value, and a third of those with the other.
+    assert told.points == pytest.approx(1 / 2 - 1 / 3)
+    assert {told.reading, told.other} == {"gate", "cycles"}
+
+
+def test_what_a_rule_keeps_apart_is_not_called_uneven(planted, readings):
+    rows = planted.select(["physiology", "gate"]).to_pylist()
+    kept = [row != {"physiology": "decay", "gate": "always"} for row in rows]
+    assert largest_imbalance(planted.filter(pa.array(kept)), readings).points == 0.0

@@ -192,3 +192,12 @@ def test_lives_cut_at_different_caps_are_refused(lives, likelihoods):
     cut = cut.set_column(cut.schema.get_field_index("censored"), "censored", pa.array(alive))
     with pytest.raises(ValueError, match="one cap"):
         judge_universes(cut, likelihoods)
+
+
+def test_of_a_single_life_and_a_single_robot_nothing_is_decided(make_lives, make_likelihoods):
+    table = judge_universes(
+        make_lives([[1_000.0, 9_000.0, 900.0, 1_000.0]], lives=1),
+        make_likelihoods([True], robots=1),
+    )
+    assert {table[claim][0].as_py() for claim in CLAIMS} == {"undecided"}
+    assert np.isfinite(table["abundant_gain"][0].as_py())

@@ -147,3 +147,16 @@ def test_of_nothing_finished_nothing_is_judged(plan, lived, tmp_path):
     none = judge(plan, open_results(directory))
     assert none.table.num_rows == 0
     assert none.missing == len(none.universes.values)
+
+
+def test_where_a_robot_of_every_class_failed_nothing_is_judged(plan, lived, tmp_path):
+    directory = tmp_path / "universes"
+    shutil.copytree(lived.directory / "universes", directory)
+    for file in (directory / "teachers").glob("part-*.parquet"):
+        rows = pq.read_table(file)
+        place = rows.schema.get_field_index("error")
+        broken = pa.array(["a robot broke"] * rows.num_rows, pa.string())
+        pq.write_table(rows.set_column(place, "error", broken), file)
+    none = judge(plan, open_results(directory))
+    assert none.table.num_rows == 0
+    assert none.missing == len(none.universes.values)

@@ -121,6 +121,26 @@ def test_a_set_that_is_found_is_confirmed_by_fresh_universes(small, tmp_path, mo
         assert told.verdict == "undecided" or told.share.value < 0.95
 
 
+def test_where_another_set_is_found_later_it_is_confirmed_beside_the_first(
+    small, lived, tmp_path, monkeypatch
+):
+    """As by a later version: what was lived of the universes is not lost for it."""
+    directory = tmp_path / "again"
+    shutil.copytree(lived.directory, directory)
+    for value, there in (("clamp", {"C1"}), ("lethal", {"C1", "C1-2"}), ("clamp", {"C1", "C1-2"})):
+        conditions = (Condition("overflow", (value,)),)
+
+        def by_hand(universes, readings, claim, conditions=conditions):
+            return SmallestSet(claim, conditions, 40, share(39, 40)) if claim == "C1" else None
+
+        monkeypatch.setattr(module, "smallest_set", by_hand)
+        found = go(small, directory, Size(confirming=4, longer=0))
+        assert found.confirmed["C1"].found.conditions == conditions
+        assert {path.name for path in (directory / "confirmation").iterdir()} == there
+    second = open_results(directory / "confirmation/C1-2")
+    assert set(second.cases["mind.overflow"].to_pylist()) == {"lethal"}
+
+
 def test_the_full_product_is_lived_in_portions(small, tmp_path, monkeypatch):
     data = json.loads(small.model_dump_json(exclude_none=True))
     over = data["design"]["sample"]["over"]
@@ -151,6 +171,27 @@ def test_universes_that_all_failed_are_told_of(small, lived, tmp_path, monkeypat
     monkeypatch.setattr(module, "judge", lambda *_, **__: module.Judged(*empty))
     with pytest.raises(SettingsError, match="nothing can be judged"):
         go(small, lived.directory)
+
+
+def test_where_only_universes_beside_them_failed_the_others_are_told_of(
+    small, lived, tmp_path, monkeypatch
+):
+    directory = tmp_path / "again"
+    shutil.copytree(lived.directory, directory)
+    one = SmallestSet("C1", (), 40, share(39, 40))
+    monkeypatch.setattr(module, "smallest_set", lambda *_: one)
+    whole = module.judge
+
+    def judge(plan, results, readings, **settings):
+        judged = whole(plan, results, readings, **settings)
+        if results.directory.name == "universes":
+            return judged
+        return judged._replace(table=judged.table.select(["universe"]).slice(0, 0))
+
+    monkeypatch.setattr(module, "judge", judge)
+    found = go(small, directory, Size(confirming=4, longer=4, late=1_200))
+    assert found.table.equals(lived.found.table)
+    assert (found.cap, found.confirmed) == (None, {})
 
 
 def test_the_tables_are_those_of_the_store(lived):

@@ -8,10 +8,18 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from animat.report.figures.style import BLACK, BLUE, GREY, VERMILLION, new_figure, styled
+from animat.report.figures.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    VERMILLION,
+    new_figure,
+    shortened,
+    styled,
+)
 
 _POINTS = LinearSegmentedColormap.from_list("points", [VERMILLION, "white", BLUE])
-_DARK = 0.6
+_UNSURE = "#666666"
 _TICKS = (
     (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0),
     (0.5, 0.7, 1.0, 1.4, 2.0),
@@ -24,28 +32,28 @@ _FARTHEST = 30.0  # factors beyond it, of a few universes, are not worth the roo
 def points_figure(effects: pa.Table, claims: Sequence[str]) -> Figure:
     """Points by which a value of a reading changes the share of universes in which a claim holds.
 
-    `effects` is of `multiverse.marginal.marginal_effects`. Grey numbers have an interval with 0.
+    `effects` is of `multiverse.marginal.marginal_effects`. Only cells whose interval excludes 0
+    are coloured; the numbers of the others are grey.
     """
     found = _by_contrast(effects)
     fig = new_figure(7.2, 0.21 * len(found) + 0.9)
     ax = fig.subplots()
-    points = np.array([[rows[claim]["effect"] for claim in claims] for rows in found.values()])
-    ax.imshow(points, cmap=_POINTS, vmin=-1.0, vmax=1.0, aspect="auto")
-    for place, rows in enumerate(found.values()):
-        for number, claim in enumerate(claims):
-            row = rows[claim]
-            if np.isnan(row["effect"]):
-                continue
-            sure = row["low"] > 0.0 or row["high"] < 0.0
-            ink = "white" if abs(row["effect"]) > _DARK else BLACK
-            ax.text(
-                number, place, f"{round(100 * row['effect']):+d}", ha="center", va="center",
-                fontsize=8, color=ink if sure else GREY,
-                fontweight="bold" if sure else "normal",
-            )  # fmt: skip
+    points, low, high = (
+        np.array([[rows[claim][part] for claim in claims] for rows in found.values()])
+        for part in ("effect", "low", "high")
+    )
+    sure = (low > 0.0) | (high < 0.0)
+    ax.imshow(np.where(sure, points, 0.0), cmap=_POINTS, vmin=-1.0, vmax=1.0, aspect="auto")
+    for place, number in np.argwhere(~np.isnan(points)).tolist():
+        told = round(100 * float(points[place, number]))
+        ax.text(
+            number, place, f"{told:+d}", ha="center", va="center", fontsize=8,
+            color=BLACK if sure[place, number] else _UNSURE,
+            fontweight="bold" if sure[place, number] else "normal",
+        )  # fmt: skip
     ax.set_xticks(range(len(claims)), claims)
     ax.xaxis.tick_top()
-    ax.set_yticks(range(len(found)), list(found), fontsize=8)
+    ax.set_yticks(range(len(found)), _words(found), fontsize=8)
     ax.tick_params(length=0)
     ax.spines[:].set_visible(False)
     return fig
@@ -79,7 +87,7 @@ def factors_figure(effects: pa.Table, outcomes: Mapping[str, str]) -> Figure:
         ax.xaxis.set_minor_locator(NullLocator())
         ax.set_xlabel(words)
         ax.grid(axis="x")
-    axes[0].set_yticks(at, list(found), fontsize=8)
+    axes[0].set_yticks(at, _words(found), fontsize=8)
     axes[0].set_ylim(len(found) - 0.5, -0.5)
     for ax in axes:
         ax.tick_params(axis="y", length=0)
@@ -92,10 +100,18 @@ def _ticks(low: float, high: float) -> list[float]:
     return next((ticks for ticks in inside if len(ticks) >= 3), inside[-1])
 
 
-def _by_contrast(effects: pa.Table) -> dict[str, dict[str, dict]]:
-    """The rows by what is compared, in words, and by outcome."""
-    found: dict[str, dict[str, dict]] = {}
+def _by_contrast(effects: pa.Table) -> dict[tuple[str, str], dict[str, dict]]:
+    """The rows by the reading and the value that are compared, and by outcome."""
+    found: dict[tuple[str, str], dict[str, dict]] = {}
     for row in effects.to_pylist():
-        words = f"{row['reading']}: {row['value']}, not {row['against']}"
-        found.setdefault(words, {})[row["outcome"]] = row
+        found.setdefault((row["reading"], row["value"]), {})[row["outcome"]] = row
     return found
+
+
+def _words(found: Mapping[tuple[str, str], Mapping[str, dict]]) -> list[str]:
+    """What is compared, in words that leave room for the drawing."""
+    against = [next(iter(rows.values()))["against"] for rows in found.values()]
+    return [
+        f"{shortened(reading, 22)}: {shortened(value, 14)}, not {shortened(other, 14)}"
+        for (reading, value), other in zip(found, against, strict=True)
+    ]

@@ -8,7 +8,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from animat.report.figures.style import BLACK, BLUE, GREY, new_figure, styled
+from animat.report.figures.style import BLACK, BLUE, GREY, new_figure, shortened, styled
 from animat.report.figures.verdicts import VERDICT_COLOURS
 from animat.report.lives import column
 from animat.report.multiverse.readings import Readings, codes
@@ -16,7 +16,7 @@ from animat.report.multiverse.readings import Readings, codes
 MOST_COLUMNS = 100
 """Columns of the dashboard; more universes than this share one."""
 
-_MARKS = {"holds": "o", "undecided": ".", "fails": "v"}
+_MARKS = {"holds": "o", "undecided": "s", "fails": "v"}
 _SHADES = LinearSegmentedColormap.from_list("shades", ["white", BLUE])
 
 
@@ -38,7 +38,11 @@ def specification_figure(
     value = column(universes, effect).astype(np.float64)
     order = np.argsort(value, kind="stable")
     code = codes(universes, readings)[order]
-    rows = [f"{name}: {each}" for name, values in readings.items() for each in values]
+    rows = [
+        f"{shortened(name, 24)}: {shortened(value, 16)}"
+        for name, values in readings.items()
+        for value in values
+    ]
     fig = new_figure(7.2, 3.0 + 0.165 * len(rows))
     above, below = fig.subplots(
         2, 1, sharex=True, height_ratios=[2.6, 0.165 * len(rows)], squeeze=True

@@ -48,7 +48,10 @@ def verdicts_figure(shares: pa.Table, claims: dict[str, str]) -> Figure:
             left += width
         holds = rows[claim, "holds"]
         ax.plot([holds["low"], holds["high"]], [place - 0.2] * 2, color=BLACK, lw=2.2)
-        ax.plot(holds["share_by_value"], place - 0.2, "D", color="white", mec=BLACK, ms=5, zorder=3)
+        ax.plot(
+            holds["share_by_value"], place - 0.2, "D", color="white", mec=BLACK, ms=5, zorder=3,
+            clip_on=False,
+        )  # fmt: skip
     ax.set_yticks(range(len(claims)), [f"{claim}  {words}" for claim, words in claims.items()])
     ax.invert_yaxis()
     ax.set_xlim(0.0, 1.0)

@@ -31,8 +31,8 @@ def strongest_interactions(
     `other`, `other_value`, `other_against`, `universes` (in the smallest of the four groups),
     `effect_here`, `effect_against` and `interaction`, `low`, `high` (a difference of points, a
     factor between factors, or a difference). Intervals are simultaneous: wide enough for all
-    pairs at once (Bonferroni). A row is given only where the interval excludes nothing; of two
-    readings only the pair of values that shows most.
+    pairs at once (Bonferroni). A row is given only where the interval excludes that there is no
+    interaction; of two readings only the pair of values that shows most.
     """
     code = codes(universes, readings)
     pairs = list(_pairs(code, readings))
@@ -94,12 +94,7 @@ def _interaction(outcome: Outcome, groups: Groups, tests: int) -> dict[str, floa
     """The double difference of the four means, and how far from nothing it surely is."""
     parts = [outcome.values[group] for group in groups]
     both, first, other, neither = (float(part.mean()) for part in parts)
-    # A share of 0 or 1 in a small group has no spread of its own, so each gets one more of either.
-    spread = sum(
-        (part.var(ddof=1) if outcome.scale != "points" else _share_variance(part)) / len(part)
-        for part in parts
-    )
-    half = float(stats.norm.ppf(1.0 - (1.0 - LEVEL) / (2 * tests)) * np.sqrt(spread))
+    half = _half_width(parts, 1.0 - (1.0 - LEVEL) / (2 * tests), outcome.scale == "points")
     here, against = both - other, first - neither
     between = here - against
     told = np.array([here, against, between, between - half, between + half])
@@ -112,6 +107,21 @@ def _interaction(outcome: Outcome, groups: Groups, tests: int) -> dict[str, floa
         "universes": min(len(part) for part in parts),
         "sure": max(0.0, abs(between) - half),
     }
+
+
+def _half_width(parts: list[NDArray[np.float64]], quantile: float, of_shares: bool) -> float:
+    """Half of the t interval of a sum of independent means, with Satterthwaite's degrees.
+
+    Far out in the tails a normal interval of a few universes is much too narrow.
+    """
+    size = np.array([len(part) for part in parts])
+    # A share of 0 or 1 in a small group has no spread of its own, so each gets one more of either.
+    variance = [_share_variance(part) if of_shares else part.var(ddof=1) for part in parts]
+    spread = np.array(variance) / size
+    if not spread.any():
+        return 0.0
+    degrees = spread.sum() ** 2 / np.sum(spread**2 / (size - 1))
+    return float(stats.t.ppf(quantile, degrees) * np.sqrt(spread.sum()))
 
 
 def _share_variance(values: NDArray[np.float64]) -> float:

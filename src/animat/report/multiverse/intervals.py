@@ -57,6 +57,8 @@ def bootstrapped_rows(
     if values == 0:
         raise ValueError("an estimate needs at least one value in every sample")
     value = of_means(*(sample.mean(axis=1) for sample in samples))
+    if values == 1:
+        return Estimates(value, np.full(rows, np.nan), np.full(rows, np.nan))
     low, high = value.copy(), value.copy()
     varies = np.any([np.ptp(sample, axis=1) > 0.0 for sample in samples], axis=0)
     method = "BCa" if values <= BCA_LIMIT else "percentile"

@@ -31,6 +31,17 @@ class Outcome(NamedTuple):
     values: NDArray[np.float64]
 
 
+class Imbalance(NamedTuple):
+    """How much a comparison by `reading` is also one by `other`.
+
+    By so many `points`, in [0, 1], the share of a value of `other` differs between the two groups.
+    """
+
+    reading: str
+    other: str
+    points: float
+
+
 def outcomes(universes: pa.Table) -> list[Outcome]:
     """The claims and the effects of a table of universes as outcomes."""
     found = [
@@ -77,6 +88,26 @@ def marginal_effects(universes: pa.Table, readings: Readings) -> pa.Table:
                 }
             )
     return pa.Table.from_pylist(rows)
+
+
+def largest_imbalance(universes: pa.Table, readings: Readings) -> Imbalance:
+    """The comparison of `marginal_effects` in which another reading is shared out least evenly.
+
+    What that reading does enters the effect by so many points. Points of Sobol's sequence share
+    out values in threes only roughly.
+    """
+    code, names = codes(universes, readings), list(readings)
+    largest = Imbalance("", "", 0.0)
+    for place, _, one, other in _contrasts(code, readings):
+        if not (one.any() and other.any()):
+            continue
+        for rest, name in enumerate(names):
+            for value in range(len(readings[name])):
+                has = code[:, rest] == value
+                points = abs(float(has[one].mean() - has[other].mean()))
+                if rest != place and points > largest.points:
+                    largest = Imbalance(names[place], name, points)
+    return largest
 
 
 def difference(one: NDArray[np.float64], other: NDArray[np.float64], scale: str) -> Estimate:

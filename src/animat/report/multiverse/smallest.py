@@ -12,9 +12,10 @@ from typing import NamedTuple
 import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
+from scipy import stats
 
 from animat.report.claims import Verdict, above
-from animat.report.estimates import Estimate, share
+from animat.report.estimates import LEVEL, Estimate, share
 from animat.report.lives import column
 from animat.report.multiverse.readings import MOST_UNIVERSES, Readings, codes, some_of
 from animat.report.multiverse.universes import holds
@@ -25,8 +26,11 @@ NEARLY_ALL = 0.95
 MOST_READINGS = 5
 """How many readings a set fixes at most; with more, too few universes are left to judge by."""
 
+SURELY = 0.85
+"""What the share is to exceed even if the set, the best of so many, owes it to luck."""
+
 SUPPORT = 40
-"""Universes that must be left; if the claim holds in all, Wilson's interval begins at 0.91."""
+"""Universes that must be left, however few sets there are."""
 
 BEAM = 5_000
 """Sets of each size that are extended; every pair and triple of usual designs is tried."""
@@ -60,14 +64,16 @@ class Confirmation(NamedTuple):
 def smallest_set(universes: pa.Table, readings: Readings, claim: str) -> SmallestSet | None:
     """The set of fewest conditions with which `claim` holds in `NEARLY_ALL` universes.
 
-    Of several of one size the one whose share is surest: Wilson's interval begins highest. None
-    if no set of `MOST_READINGS` or fewer does it in at least `SUPPORT` universes.
+    With the best of very many sets that may be luck. So its share must also exceed `SURELY` by a
+    test that counts all sets of its size (Bonferroni). Of several of one size the one whose share
+    is surest: Wilson's interval begins highest. None if no set of `MOST_READINGS` or fewer does it.
     """
     universes = some_of(universes, MOST_UNIVERSES)
     good_in = holds(universes, claim)
-    if len(good_in) >= SUPPORT and good_in.mean() >= NEARLY_ALL:
+    if _enough(good_in.sum(), np.array(len(good_in)), 1):
         return SmallestSet(claim, (), len(good_in), share(int(good_in.sum()), len(good_in)))
     conditions, met, of = _literals(codes(universes, readings), readings)
+    tried = _sets_of_each_size(of)
     sets = np.arange(len(conditions))[:, None]
     for size in range(1, min(MOST_READINGS, len(readings)) + 1):
         masks = np.all(met[sets], axis=1)
@@ -77,10 +83,10 @@ def smallest_set(universes: pa.Table, readings: Readings, claim: str) -> Smalles
         if not len(sets):
             return None
         good = (masks & good_in).sum(axis=1)
-        shares = good / total
-        if np.any(shares >= NEARLY_ALL):
-            return _surest(claim, conditions, sets, good, total)
-        best = np.lexsort((-total, -shares))[:BEAM]
+        enough = _enough(good, total, tried[size])
+        if np.any(enough):
+            return _surest(claim, conditions, sets[enough], good[enough], total[enough])
+        best = np.lexsort((-total, -good / total))[:BEAM]
         if size < min(MOST_READINGS, len(readings)):
             sets = _extended(sets[best], masks[best], met, of, good_in)
     return None
@@ -94,6 +100,26 @@ def confirm(found: SmallestSet, universes: pa.Table) -> Confirmation:
     good_in = holds(universes, found.claim)[meets]
     estimate = share(int(good_in.sum()), len(good_in))
     return Confirmation(found, len(good_in), estimate, above(estimate, NEARLY_ALL))
+
+
+def _enough(good: NDArray, total: NDArray, tried: float) -> NDArray[np.bool_]:
+    """Whether a claim that holds in `good` [K] of `total` universes does so nearly everywhere.
+
+    `tried` is how many sets it might have been the best of.
+    """
+    luck = tried * stats.binom.sf(good - 1, total, SURELY)
+    return (total >= SUPPORT) & (good >= NEARLY_ALL * total) & (luck <= 1.0 - LEVEL)
+
+
+def _sets_of_each_size(of: NDArray[np.int64]) -> list[float]:
+    """How many sets there are of each size, from none on: a condition each on so many readings.
+
+    `of` [L] is the reading of each condition. They are the coefficients of a product of (1 + n x).
+    """
+    sets = np.ones(1)
+    for conditions in np.bincount(of):
+        sets = np.convolve(sets, [1.0, conditions])
+    return sets.tolist()
 
 
 def _literals(
@@ -140,9 +166,7 @@ def _surest(
     good: NDArray[np.int64],
     total: NDArray[np.int64],
 ) -> SmallestSet:
-    enough = np.flatnonzero(good / total >= NEARLY_ALL)
-    estimates = [share(int(good[k]), int(total[k])) for k in enough]
-    best = max(range(len(enough)), key=lambda k: (estimates[k].low, -k))
-    k = int(enough[best])
+    estimates = [share(int(g), int(t)) for g, t in zip(good, total, strict=True)]
+    k = max(range(len(estimates)), key=lambda k: (estimates[k].low, -k))
     chosen = tuple(conditions[c] for c in sets[k])
-    return SmallestSet(claim, chosen, int(total[k]), estimates[best])
+    return SmallestSet(claim, chosen, int(total[k]), estimates[k])

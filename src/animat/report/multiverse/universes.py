@@ -92,7 +92,10 @@ def holds(universes: pa.Table, claim: str) -> NDArray[np.bool_]:
 
 
 def verdicts_by_value(universes: pa.Table) -> dict[str, list[Verdict]]:
-    """The verdict on each claim in each universe if its estimates were exact: never undecided."""
+    """The verdict on each claim in each universe if its estimates were exact.
+
+    Undecided is then only what lies on a border, such as a ratio of just 1.
+    """
     effects = {name: Estimates(*[column(universes, name)] * 3) for name in EFFECTS}
     error = effects["learning_error"]
     return {

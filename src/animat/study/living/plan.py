@@ -36,6 +36,9 @@ LIFE_STEPS = 30_000_000
 TEACHER_STEPS = 5_000_000
 """The same for robots that learn, all of which do."""
 
+WORLDS_KEPT = 4_096
+"""Worlds kept as they are laid out, some kilobytes each: every agent of a design meets them all."""
+
 
 class Class(NamedTuple):
     """Robots that learn alike: their identity, how many, and whose networks they learn for."""
@@ -193,12 +196,18 @@ def plan_of(text: str) -> Plan:
     return Plan(validated(tomllib.loads(text), Study))
 
 
+def forget() -> None:
+    """Forget the plans and worlds that were made of files, which may have changed since."""
+    plan_of.cache_clear()
+    _world.cache_clear()
+
+
 def world_of(choice: WorldChoice) -> World:
     """Return the world chosen; one that is chosen again is not laid out again."""
     return _world(choice.model_dump_json(exclude_unset=True))
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=WORLDS_KEPT)
 def _world(choice: str) -> World:
     return WorldChoice.model_validate_json(choice).world()
 

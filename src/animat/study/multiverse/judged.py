@@ -135,7 +135,8 @@ class _Likelihoods:
                 if robots >= self._robots:
                     first.append(begin)
                     universe.append(numbers[row])
-            rows = pa.array((np.array(first)[:, None] + np.arange(self._robots)).ravel())
+            each = np.array(first, dtype=np.int64)[:, None] + np.arange(self._robots)
+            rows = pa.array(each.ravel())
             taught = self._rows.take(rows)
             universes = pa.array(np.repeat(universe, self._robots), pa.int64())
             for (network, thing), afforded in truth.items():

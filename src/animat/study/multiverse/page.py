@@ -19,7 +19,7 @@ from animat.report.figures.specification import specification_figure
 from animat.report.figures.style import save
 from animat.report.figures.verdicts import verdicts_figure
 from animat.report.multiverse.models import Foretold
-from animat.report.multiverse.smallest import NEARLY_ALL
+from animat.report.multiverse.smallest import NEARLY_ALL, SUPPORT, SURELY
 from animat.report.multiverse.universes import CELLS, CLAIMS
 from animat.report.survival import ALIVE, DeathCount
 from animat.study.multiverse.run import Multiverse
@@ -50,7 +50,7 @@ FIGURES = {
     "verdicts": "In how many universes each claim holds, is undecided, or fails.",
     "points": (
         "By how many points each value of a reading changes the share of universes in which a"
-        " claim holds. Grey: the 95 % interval has 0 in it."
+        " claim holds. Grey on white: the 95 % interval has 0 in it. Blank: too few universes."
     ),
     "factors": (
         "By what factor each value changes the ratio of lifespans AF / BLIND, in the geometric mean"
@@ -181,8 +181,9 @@ def _sections(
             "What each reading does",
             paragraphs=[
                 "A value is compared with the first value of its reading, in the universes in which"
-                " either was possible. Intervals are of each comparison alone; of the many here,"
-                " one in twenty excludes nothing by chance. marginal_effects.csv has all of them."
+                " either was possible. Intervals are of each comparison alone; of the values"
+                " that change nothing, one in twenty has an interval that says otherwise by chance."
+                " marginal_effects.csv has all of them."
             ],
             pictures=[pictures["points"], pictures["factors"]],
         ),
@@ -194,9 +195,10 @@ def _sections(
             "The smallest sets of readings",
             paragraphs=[
                 f"The fewest readings with which a claim holds in at least {NEARLY_ALL:.0%} of"
-                " universes, whatever the others are. Being the best of very many sets, it may owe"
-                " its share to luck; so it is judged by fresh universes, with other layouts and"
-                " other lives."
+                f" universes, and surely in more than {SURELY:.0%}, whatever the others are; at"
+                f" least {SUPPORT} universes must meet them. Being the best of very many sets, it"
+                " may still owe something to luck; so it is judged by fresh universes, with other"
+                " layouts and other lives."
             ],
             tables=[smallest_table(found)],
         ),

@@ -7,6 +7,7 @@ smallest set). Each is the results directory of a study like any other.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -30,6 +31,7 @@ from animat.study.multiverse.designs import fresh, longer, portions
 from animat.study.multiverse.judged import Judged, judge
 from animat.study.multiverse.universes import Reading, Universes, readings_of
 from animat.study.running.run import Workers, run
+from animat.study.store.description import MANIFEST
 from animat.study.store.results import open as open_results
 
 LATE = 300_000
@@ -56,8 +58,8 @@ class Multiverse(NamedTuple):
     """What was found in the universes of a study. Tables are those of `animat.report.multiverse`.
 
     `left_out` is how many cases each rule leaves out. `found` has a set for each claim, or None;
-    `confirmed` what fresh universes say of those found. `cap` is None where nothing was lived to a
-    late cap, `foretold` where scikit-learn is not installed.
+    `confirmed` what fresh universes say of those found, where not all of them failed. `cap` is None
+    where nothing was lived to a late cap, `foretold` where scikit-learn is not installed.
     """
 
     study: Study
@@ -198,11 +200,27 @@ def _confirmed(
             allowed = {condition.reading: condition.values for condition in one.conditions}
             again = fresh(study, allowed, size.confirming)
             name = f"confirmation/{claim}"
+            directory = _directory_of(again, out / name)
             lived[one.conditions] = _lived(
-                Plan(again), readings_of(study), out / name, name, workers, tell
+                Plan(again), readings_of(study), directory, name, workers, tell
             ).table
-        told[claim] = confirm(one, lived[one.conditions])
+        if lived[one.conditions].num_rows:
+            told[claim] = confirm(one, lived[one.conditions])
     return told
+
+
+def _directory_of(study: Study, wanted: Path) -> Path:
+    """Return `wanted`, or where another study stands there, the first free name after it.
+
+    A set may be another one where an analysis is made again by a later version.
+    """
+    for number in itertools.count(2):
+        if not (wanted / MANIFEST).exists():
+            break
+        if open_results(wanted).study.to_toml() == study.to_toml():
+            break
+        wanted = wanted.with_name(f"{wanted.name.partition('-')[0]}-{number}")
+    return wanted
 
 
 def _late(
@@ -216,4 +234,6 @@ def _late(
     same = len(late.universes.values)
     if late.universes.values != judged.universes.values[:same]:
         raise AssertionError("a sample does not begin like a larger one of the same seed")
+    if not late.table.num_rows:
+        return None
     return cap_effects(judged.table, late.table)

@@ -7,6 +7,7 @@ import pyarrow as pa
 
 from animat.report.estimates import Estimate, mean
 from animat.report.lives import column
+from animat.report.multiverse.marginal import largest_imbalance
 from animat.report.multiverse.smallest import NEARLY_ALL, Condition
 from animat.report.multiverse.universes import CELLS, EFFECTS
 from animat.report.page import Badge, TableBlock, interval
@@ -60,8 +61,8 @@ def interactions_tables(found: Multiverse) -> list[TableBlock]:
             ("Of", "Effect of", "Depends on", "Without it", "With it", "Interaction"),
             rows,
             "Effects in points of the share that holds, or as factors on a ratio. Intervals are"
-            " simultaneous over all pairs of values; only those that exclude nothing are shown, the"
-            " ten surest of each claim and effect.",
+            " simultaneous over all pairs of values. Only interactions that are surely there are"
+            " shown, the ten surest of each claim and effect.",
         )
     ]
     if found.foretold is None:
@@ -157,12 +158,15 @@ def cells_table(found: Multiverse) -> TableBlock:
 
 
 def readings_table(found: Multiverse) -> TableBlock:
-    """The readings and their values."""
+    """The readings and their values, and how evenly they are shared out."""
+    uneven = largest_imbalance(found.table, found.universes.names())
     return TableBlock(
         ("Reading", "Factor of the study", "Values; the first is compared with"),
         [(one.name, one.factor, ", ".join(one.labels)) for one in found.universes.readings],
         f"Every two values that no rule keeps apart meet in {found.fewest_together:,} universes or"
-        " more.",
+        " more. Between values of one reading, the share of a value of another differs by up to"
+        f" {100 * uneven.points:.0f} points ({uneven.reading}, {uneven.other}): so much of what the"
+        " one does is in the effect of the other.",
     )
 
 
