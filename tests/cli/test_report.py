@@ -39,7 +39,7 @@ def test_the_page_goes_where_it_is_asked_to(animat, results, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (["nowhere"], "nowhere: is no results directory"),
+        (["nowhere"], "nowhere: no such directory"),
         (["results/small", "--by", "mind.gate"], '"mind.gate": is no factor of the design'),
         (["results/small", "--out", "small.toml"], "is no page of animat; give another name"),
         (["results/small", "--out", "none/page.html"], "cannot be written"),

@@ -114,8 +114,8 @@ WRONG = {
     "run tiny.toml --out there": "is no results directory: it holds mine",
     "run tiny.toml --out /proc/none": "/proc/none: cannot be written",
     "status there": "there: is no results directory",
-    "verify none": "none: is no results directory",
-    "export none --to csv --out a.csv": "none: is no results directory",
+    "verify none": "none: no such directory",
+    "export none --to csv --out a.csv": "none: no such directory",
     "export none --to csv": "--out",
     "status": "DIR",
 }

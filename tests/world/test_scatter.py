@@ -6,6 +6,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from animat.world import scatter as module
 from animat.world.arena import Arena
 from animat.world.layout import Layout, LayoutError, Placement
 from animat.world.objects import TABLE_1, ObjectType
@@ -81,6 +82,29 @@ def test_counts_that_do_not_fit_are_told_with_what_fits():
     room = int(told.split("found for ")[1].split("3 of 3 TS, ")[-1].split(" of 60 CL")[0])
     assert 10 < room < 60
     assert "smaller gap" in told
+
+
+@pytest.mark.parametrize("count", [261, 10**9, 10**400])
+def test_so_many_that_they_cannot_fit_are_refused_without_a_try(count, monkeypatch):
+    """Even as points, each with 35 mm round it, 260 would fill the square metre."""
+    monkeypatch.setattr(module, "_dropped", None)
+    (told,) = refused(dropped, {"TS": count, "CL": 1})
+    assert told.startswith("the objects do not fit into 956 x 950 mm with gaps of 70 mm: by their")
+    (told,) = refused(
+        with_spares, Layout(placements=(Placement(type="TS", x=500, y=500),)), count, 1, 70.0
+    )
+    assert told.startswith("the spare sites do not fit")
+    (told,) = refused(dropped, {"TS": 10**9}, 1, 1e300)
+    assert told.startswith("the objects do not fit")
+
+
+def test_what_just_fills_the_arena_is_tried():
+    """Squares of 90 mm in rows, 10 mm apart."""
+    tile = ObjectType(name="tile", shape=4, size_mm=90, features={"a": 0.0}, affords={"b": 1.0})
+    room = Arena(width=1000, height=1000, left=45, right=45, bottom=45, top=45)
+    module._refuse_too_many(room, {tile: 81}, 10.0, "objects")
+    with pytest.raises(LayoutError, match="do not fit"):
+        module._refuse_too_many(room, {tile: 100}, 10.0, "objects")
 
 
 def test_every_impossible_count_is_told():

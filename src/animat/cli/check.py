@@ -106,6 +106,9 @@ def _costs(expected: Expectation) -> list[str]:
     ]
     if expected.seconds.low < expected.seconds.high:
         lines[-1] += "; the larger figures let all who were alive then live to the cap"
+    if expected.errors:
+        failed, lives = len(expected.errors), expected.measured_lives
+        lines.append(f"{failed:,} of these {lives:,} lives fail, such as: {expected.errors[0]}")
     return lines
 
 

@@ -8,18 +8,20 @@ from typing import Annotated
 import typer
 
 from animat.cli.app import app
-from animat.cli.options import Debug
+from animat.cli.options import Debug, ResultsDirectory
 
 
 @app.command()
 def report(
-    directory: Annotated[Path, typer.Argument(help="A results directory, of animat run.")],
+    directory: ResultsDirectory,
     by: Annotated[
         list[str] | None,
-        typer.Option(help="A factor to tell of; may be given again. All factors unless given."),
+        typer.Option(
+            metavar="FACTOR", help="A factor to tell of, all unless given; again for more."
+        ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="The page to write; DIRECTORY/report.html unless given.")
+        Path | None, typer.Option(help="The page to write; DIR/report.html unless given.")
     ] = None,
     debug: Debug = False,
 ) -> None:

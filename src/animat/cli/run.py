@@ -46,7 +46,7 @@ def run(
     from animat.study.living.plan import plan_of
     from animat.study.running.livable import check_livable
     from animat.study.running.run import run as live
-    from animat.study.store.store import MANIFEST
+    from animat.study.store.description import MANIFEST
 
     plan = plan_of(read_study(study_file(study), changes or ()).to_toml())
     directory = out or Path("results") / plan.study.name

@@ -17,6 +17,10 @@ from animat.mistakes import plain
 from animat.settings import Settings, explain, nearest
 
 Unit = Annotated[float, Field(ge=0.0, le=1.0)]
+
+LONGEST_WAIT = 1_000_000_000
+"""Steps that an act, an approach or a turning away may take; a count of them does not overflow."""
+
 Effects = dict[str, float]
 Function = str | Callable[..., Any]
 
@@ -113,9 +117,9 @@ class Mind(Settings):
     likelihood_threshold: Unit = 0.5
     encounter_range: Annotated[float, Field(gt=0.0, le=200.0)] = 30.0
     contact_range: Annotated[float, Field(ge=6.0, le=200.0)] = 10.0
-    interaction_steps: Annotated[int, Field(ge=1)] = 20
-    approach_steps: Annotated[int, Field(ge=1)] = 100
-    leave_steps: Annotated[int, Field(ge=0)] = 40
+    interaction_steps: Annotated[int, Field(ge=1, le=LONGEST_WAIT)] = 20
+    approach_steps: Annotated[int, Field(ge=1, le=LONGEST_WAIT)] = 100
+    leave_steps: Annotated[int, Field(ge=0, le=LONGEST_WAIT)] = 40
     consumed: bool = False
     feature_noise: Unit = 0.0
     wander: Function = "curved"

@@ -15,7 +15,7 @@ from animat.numerics.streams import LAYOUT, uniforms
 from animat.settings import nearest
 from animat.world.arena import Arena
 from animat.world.geometry import Outlines, packed, polygon_gap
-from animat.world.layout import TOUCHING, Layout, LayoutError, Placement
+from animat.world.layout import MOST_SITES, TOUCHING, Layout, LayoutError, Placement
 from animat.world.objects import ObjectType
 
 TRIES = 2_000
@@ -47,6 +47,8 @@ def scattered(
     if found:
         raise LayoutError(*found)
     empty = Layout(placements=(), types=types, arena=arena, minimum_gap=gap)
+    of_each = {kind: counts[kind.name] for kind in types if counts.get(kind.name)}
+    _refuse_too_many(arena, of_each, gap, "objects")
     wanted = [kind for kind in types for _ in range(counts.get(kind.name, 0))]
     placed = _dropped(empty, wanted, seed, gap, 0, "objects")
     return Layout(placements=placed, types=types, arena=arena, minimum_gap=gap)
@@ -64,6 +66,8 @@ def with_spares(layout: Layout, per_type: int, seed: int, gap: float) -> Layout:
     if found:
         raise LayoutError(*found)
     occurring = {site.type for site in layout.placements}
+    of_each = {kind: per_type for kind in layout.types if kind.name in occurring}
+    _refuse_too_many(layout.arena, of_each, gap, "spare sites")
     wanted = [kind for kind in layout.types if kind.name in occurring for _ in range(per_type)]
     placed = _dropped(layout, wanted, seed, gap, _SPARES, "spare sites")
     return Layout(
@@ -93,6 +97,37 @@ def _seed_and_gap_problems(seed: int, gap: float) -> list[str]:
     if not (math.isfinite(gap) and gap >= 0):
         found.append(f"gap = {gap!r}: allowed is a finite length of at least 0 mm")
     return found
+
+
+def _refuse_too_many(
+    arena: Arena, of_each: Mapping[ObjectType, int], gap: float, what: str
+) -> None:
+    """Refuse what cannot fit in whatever way it lies; to try so many would take for ever.
+
+    No two of the objects overlap, each with half the gap round it, and all of them lie so in the
+    free rectangle, half the gap from its walls. Raises LayoutError.
+    """
+    left, right, bottom, top = arena.free
+    room = max(right - left - gap, 0.0) * max(top - bottom - gap, 0.0)
+    areas = {kind: _area(kind, gap / 2.0) for kind in of_each}
+    fit = {kind: min(MOST_SITES, room / areas[kind]) for kind in of_each}
+    if any(of_each[kind] > fit[kind] for kind in of_each) or (
+        sum(of_each[kind] * areas[kind] for kind in of_each) > room
+    ):
+        shares = ", ".join(f"at most {int(fit[kind]):,} {kind.name}" for kind in of_each)
+        raise LayoutError(
+            f"the {what} do not fit into {right - left:g} x {top - bottom:g} mm with gaps of "
+            f"{gap:g} mm: by their area there is room for {shares} alone; take fewer, a smaller "
+            "gap or a larger arena"
+        )
+
+
+def _area(kind: ObjectType, margin: float) -> float:
+    """Return a lower bound of the area of an object with a margin round it, mm^2."""
+    corners = kind.polygon()
+    ahead = np.roll(corners, -1, axis=0)
+    own = abs(float((corners[:, 0] * ahead[:, 1] - corners[:, 1] * ahead[:, 0]).sum())) / 2.0
+    return own + math.pi * margin * margin
 
 
 def _dropped(

@@ -135,6 +135,24 @@ def test_a_study_that_still_runs_is_reported_as_far_as_it_is(tmp_path):
     assert "All lives" in page.headings
 
 
+def test_what_is_finished_meanwhile_is_in_no_number(tmp_path):
+    results = ran(FOUR, tmp_path)
+    (last, *_) = sorted((results.directory / "lives").glob("part-*.parquet"))[::-1]
+    content = last.read_bytes()
+    last.unlink()
+    there = results.progress.done
+    meanwhile = iter(range(4))
+
+    def tell(*_):
+        if next(meanwhile) == 1:
+            last.write_bytes(content)
+
+    path, short = write_report(results, None, None, tell)
+    assert results.progress.done == 100
+    assert short[0].startswith(f"Not finished: {100 - there} of 100 lives")
+    assert f"{there} of 100 finished" in Page(path).text
+
+
 def test_a_study_of_which_nothing_is_finished_says_so(tmp_path):
     results = ran(FOUR, tmp_path, without=10**6)
     page, short = reported(results)

@@ -26,7 +26,7 @@ def plan_of(text: str) -> Plan:
 def measured(lifespans: list[int], cap: int) -> Measured:
     steps = np.minimum(lifespans, cap)
     table = pa.table({"lifespan": steps, "censored": np.array(lifespans) > cap})
-    return Measured(table, cap, 1.0)
+    return Measured(table, cap, 1.0, [None] * len(steps))
 
 
 @settings(deadline=None)
@@ -42,6 +42,11 @@ def test_a_mean_lifespan_lies_between_what_was_seen_and_the_cap(lifespans, cap, 
 def test_what_no_step_has_killed_lives_to_the_cap():
     assert measured([500, 500], 100).mean_lifespan(300) == Range(300.0, 300.0)
     assert measured([50, 50], 100).mean_lifespan(300) == Range(50.0, 50.0)
+
+
+def test_a_life_that_fails_lives_no_longer():
+    seen = measured([500, 50], 100)._replace(errors=["it raises", None])
+    assert seen.mean_lifespan(300) == Range(75.0, 75.0)
 
 
 def test_lives_that_die_at_a_constant_rate_are_foretold():
@@ -109,3 +114,24 @@ def test_the_mean_lifespan_is_near_that_of_the_lives_then_lived():
     assert expected.most_steps == 1_000 * 20_000
     per_second = steps.mean() * 1_000 / expected.seconds.low
     assert 1e4 < per_second < 1e10
+
+
+WALK = """
+def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+    if luck_a < {below}:
+        raise ValueError("lost")
+    return speed, speed
+"""
+
+
+@pytest.mark.parametrize("below", [2.0, 0.001])
+def test_lives_that_fail_are_told_of(tmp_path, below):
+    own = tmp_path / "own.py"
+    own.write_text(WALK.format(below=below))
+    expected = expect(
+        plan_of(f'steps = 500\n[mind]\nwander = "{own}:walk"\n[record]\nwhat = "all"')
+    )
+    assert 0 < len(expected.errors) <= expected.measured_lives
+    assert (len(expected.errors) == expected.measured_lives) == (below > 1.0)
+    assert all(error.startswith("ValueError: lost, in step") for error in expected.errors)
+    assert expected.seconds.high < 60.0

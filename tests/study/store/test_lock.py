@@ -96,7 +96,9 @@ def test_who_only_looks_keeps_nobody_out(tmp_path, monkeypatch):
         assert holder(lock)[1]
 
 
-@pytest.mark.parametrize("words", ["", "{", '{"pid": 1}', "[1, 2]", "null", "\x00" * 9, "7"])
+@pytest.mark.parametrize(
+    "words", ["", "{", '{"pid": 1}', "[1, 2]", "null", "\x00" * 9, "7", "[" * 4096]
+)
 def test_torn_words_are_nobodys(tmp_path, words, monkeypatch):
     monkeypatch.setattr(module, "PATIENCE", 0.0)
     lock = tmp_path / "lock"

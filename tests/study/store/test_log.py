@@ -48,7 +48,9 @@ def test_a_torn_line_is_passed_over_and_the_next_one_is_whole(tmp_path_factory, 
     assert told(path) == [*EVENTS[: len(kept)], ("again", {})]
 
 
-@pytest.mark.parametrize("line", [b"\xff\xfe", b"null", b"7", b"[]", b"{}", b'{"event"'])
+@pytest.mark.parametrize(
+    "line", [b"\xff\xfe", b"null", b"7", b"[]", b"{}", b'{"event"', b"[" * 9_000]
+)
 def test_what_is_no_event_is_passed_over(tmp_path, line):
     path = tmp_path / "log"
     path.write_bytes(line + b"\n")

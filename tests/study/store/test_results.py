@@ -111,5 +111,50 @@ def test_the_study_is_the_study(small, finished):
 
 
 def test_nothing_is_no_results(tmp_path):
-    with pytest.raises(SettingsError, match="is no results directory"):
+    with pytest.raises(SettingsError, match=r"is no results directory: it has no manifest\.json"):
         animat.study.open(tmp_path)
+    with pytest.raises(SettingsError, match="none: no such directory"):
+        animat.study.open(tmp_path / "none")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("part-000002", "part-999999", "part-00", "part-0000000", "part-x", "part-000000 (copy)"),
+        "x",
+    ],
+)
+def test_what_only_looks_like_a_part_is_none(finished, tmp_path, name):
+    directory = shutil.copytree(finished, tmp_path / "results")
+    shutil.copy(directory / "lives/part-000000.parquet", directory / f"lives/{name}.parquet")
+    results = Results(directory)
+    assert results.progress == (16, 16)
+    assert results.tally().complete
+    assert results.lives().equals(Results(finished).lives())
+
+
+def test_a_torn_part_and_what_belongs_to_it_is_not_there(finished, tmp_path):
+    directory = shutil.copytree(finished, tmp_path / "results")
+    path = directory / "lives" / "part-000000.parquet"
+    shutil.copy(directory / "teachers" / "part-000000.parquet", path)
+    assert Results(directory).progress == (8, 16)  # of other lives than it should be
+    path.write_bytes(path.read_bytes()[:-9])
+    results, whole = Results(directory), Results(finished)
+    assert results.progress == (8, 16)
+    assert results.lives().to_pylist() == whole.lives().to_pylist()[8:]
+    assert results.curves().num_rows == 0 < whole.curves().num_rows
+    assert set(results.traces()["case"].to_pylist()) == {1}
+
+
+def test_a_file_that_cannot_be_read_to_its_end_is_told_of(finished, tmp_path):
+    directory = shutil.copytree(finished, tmp_path / "results")
+    for name in ("lives", "teachers", "traces", "curves"):
+        (path, *_) = sorted((directory / name).glob("*-000000.parquet"))
+        content = bytearray(path.read_bytes())
+        content[4:900] = bytes(896)
+        path.write_bytes(content)
+    results = Results(directory)
+    assert results.progress == (16, 16)
+    for read in (results.lives, results.teachers, results.traces, results.curves):
+        with pytest.raises(SettingsError, match=r"cannot be read .*; animat verify says which"):
+            read()

@@ -88,3 +88,11 @@ def test_failures_are_counted(faults, tmp_path):
     assert [line.partition(": ")[2] for line in told] == errors[:3]
     assert all(line.startswith("case 0, life ") for line in told)
     assert any("whose networks it has, failed" in error for error in errors)
+
+
+@pytest.mark.parametrize("entry", ["{}", '{"steps": "x", "seconds": null}', '{"steps": 1}'])
+def test_a_log_of_somebody_elses_tells_no_speed(copied, entry):
+    (copied / "lives" / "part-000001.parquet").unlink()
+    (copied / "log.jsonl").write_text(f'{{"event": "part", {entry[1:]}\n'.replace(", }", "}") * 3)
+    with hold(copied / "lock"):
+        assert "time left not known yet" in status(Results(copied))[-1]

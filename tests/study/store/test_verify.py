@@ -59,7 +59,7 @@ def test_a_number_that_has_changed_is_found(copied, file):
     table = changed(pq.read_table(path))
     pq.write_table(table.replace_schema_metadata({b"animat": metadata[b"animat"]}), path)
     (problem,) = looked(copied).problems
-    assert problem == f"{path}: has changed since it was written"
+    assert problem.startswith(f"{path}: has changed since it was written; take it away")
 
 
 @pytest.mark.parametrize("file", FILES)
@@ -121,7 +121,7 @@ def test_a_part_in_the_place_of_another_is_found(copied):
     path = copied / "lives" / "part-000001.parquet"
     shutil.copy(copied / "lives" / "part-000000.parquet", path)
     (problem,) = looked(copied).problems
-    assert problem == f"{path}: holds other lives than it should"
+    assert problem.startswith(f"{path}: holds other lives than it should; take it away")
 
 
 def test_what_was_wrong_when_it_was_sealed_is_found_by_living_again(copied, small):
@@ -149,10 +149,11 @@ def test_a_study_or_cases_that_have_changed_are_found(copied):
     study = copied / "study.toml"
     text = study.read_text()
     study.write_text(text.replace("seed = 0", "seed = 1"))
-    assert looked(copied).problems == [f"{study}: has changed since"]
+    (problem,) = looked(copied).problems
+    assert problem.startswith(f"{study}: has changed since")
     study.write_text(text)
     cases = copied / "cases.parquet"
-    pq.write_table(pq.read_table(cases).slice(1), cases)
+    pq.write_table(pq.read_table(cases).drop_columns("mind.agent"), cases)
     assert looked(copied).problems == [f"{cases}: has other cases than the study"]
 
 
@@ -160,3 +161,43 @@ def test_lives_of_another_engine_cannot_be_lived_again(finished, monkeypatch):
     monkeypatch.setattr(module, "ENGINE", 999)
     (problem,) = looked(finished).problems
     assert "this is engine 999" in problem
+
+
+def test_what_tells_of_the_study_is_looked_at(copied):
+    columns = copied / "lives" / "_common_metadata"
+    shutil.copy(copied / "teachers" / "_common_metadata", columns)
+    (problem,) = looked(copied).problems
+    assert problem.startswith(f"{columns}: has other columns than the study; animat run")
+    columns.unlink()
+    (problem,) = looked(copied).problems
+    assert problem.startswith(f"{columns}: is missing or torn; animat run")
+
+
+def test_lives_that_are_others_now_are_told_of(copied):
+    cases = pq.read_table(copied / "cases.parquet")
+    other = cases.set_column(cases.schema.get_field_index("identity"), "identity", [["a", "b"]])
+    pq.write_table(other, copied / "cases.parquet")
+    (problem,) = looked(copied).problems
+    assert problem.startswith(f"{copied}: its lives are not those that are lived now")
+
+
+def test_a_copy_of_a_file_that_is_none_any_more_is_found(faults, tmp_path):
+    own = tmp_path / "own.py"
+    own.write_text(
+        "def walk(readings, a, s, memory, luck_a, luck_b, speed, turn):\n    return 1, 2\n"
+    )
+    plan = faults.plan(f'name = "own"\nlives = 1\nsteps = 5\n[mind]\nwander = "{own}:walk"\n')
+    faults.go_on(plan, tmp_path / "results")
+    assert looked(tmp_path / "results").problems == []
+    (copy,) = (tmp_path / "results" / "inputs").iterdir()
+    copy.write_text("")
+    assert looked(tmp_path / "results").problems == [
+        f"{copy}: is no copy of {own} any more; animat run with the same study writes it anew"
+    ]
+
+
+@pytest.mark.parametrize("name", ["part-000002.parquet", "part-00.parquet", "part-x.parquet", "a"])
+def test_a_file_of_nobody_is_found(copied, name):
+    path = copied / "lives" / name
+    shutil.copy(copied / "lives" / "part-000000.parquet", path)
+    assert looked(copied) == (3, 3, 3, [f"{path}: is none of the files of the study"])

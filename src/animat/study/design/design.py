@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import tomli_w
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from animat.settings import Settings, SettingsError
 from animat.study.design.axes import axes, combinations, factors, left_out
@@ -21,11 +21,17 @@ if TYPE_CHECKING:
     from animat.study.design.study import Study
 
 
+def _one_line(text: str) -> str:
+    if not text.isprintable():
+        raise ValueError("must be one line of what can be printed")
+    return text
+
+
 class Exclusion(Settings):
     """Combinations left out: where every factor named has one of the values given, and why."""
 
     when: Annotated[dict[str, Value | Values], Field(min_length=1)]
-    why: Annotated[str, Field(min_length=1)]
+    why: Annotated[str, Field(min_length=1), AfterValidator(_one_line)]
 
     def listed(self, factor: str) -> list[Scalar]:
         """Return the values of a factor that are left out."""

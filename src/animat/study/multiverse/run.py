@@ -31,8 +31,8 @@ from animat.study.multiverse.designs import fresh, longer, portions
 from animat.study.multiverse.judged import Judged, judge
 from animat.study.multiverse.universes import Reading, Universes, readings_of
 from animat.study.running.run import Workers, run
+from animat.study.store.description import MANIFEST
 from animat.study.store.results import open as open_results
-from animat.study.store.store import MANIFEST
 
 LATE = 300_000
 """The cap of the paper's Experiment 1, taken here for the lives that show what a cap does."""

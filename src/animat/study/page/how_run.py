@@ -8,15 +8,18 @@ from typing import Any
 import pyarrow as pa
 
 from animat.report.page import Section, TableBlock
-from animat.study.store.results import Results
+from animat.study.store.results import Progress, Results
 
 ERRORS_SHOWN = 20
 
 
-def how_run_section(results: Results, failed: pa.Table) -> Section:
-    """Return how it was run; `failed` are the lives that have an `error`."""
+def how_run_section(results: Results, progress: Progress, failed: pa.Table) -> Section:
+    """Return how it was run; `failed` are the lives that have an `error`.
+
+    `progress` is how far it was when the lives were read; more may be finished by now.
+    """
     manifest = results.manifest
-    done, total = results.progress
+    done, total = progress
     tables = [_failures(failed)] if failed.num_rows else []
     return Section(
         "How it was run",
@@ -28,18 +31,18 @@ def how_run_section(results: Results, failed: pa.Table) -> Section:
             **_runs(manifest["runs"]),
         },
         tables=tables,
-        notices=notices(results, failed),
+        notices=notices(progress, failed),
     )
 
 
-def notices(results: Results, failed: pa.Table) -> list[str]:
+def notices(progress: Progress, failed: pa.Table) -> list[str]:
     """Return what nobody should miss: a study that still runs, lives that failed."""
-    done, total = results.progress
+    done, total = progress
     told = []
     if done < total:
         told.append(
             f"Not finished: {total - done:,} of {total:,} lives are still to be lived. All numbers"
-            " are of the lives that are there; the first cases are there first."
+            " are of the lives that are there, some of every case where there are many."
         )
     if failed.num_rows:
         told.append(

@@ -21,8 +21,7 @@ from animat.study.page.asked import asked_section
 from animat.study.page.how_run import how_run_section, notices
 from animat.study.page.methods import model_words, representatives
 from animat.study.reproduction.readings import readings
-from animat.study.store.results import Results
-from animat.study.store.store import STUDY
+from animat.study.store.results import Progress, Results
 
 PAGE = "report.html"
 
@@ -50,6 +49,7 @@ def write_report(
     _refuse(results, path, by)
     tell("Report", 0, 3)
     lives, failed = _lives(results)
+    progress = _progress(results, lives, failed)
     laid_out = cases(results.study)
     tell("Report", 1, 3)
     found = _found(results, lives, by)
@@ -57,7 +57,7 @@ def write_report(
     short = in_short(found) if found else [NOTHING_YET]
     sections = [
         asked_section(results.study, laid_out),
-        how_run_section(results, failed),
+        how_run_section(results, progress, failed),
         *(result_sections(found) if found else []),
         *_learnt_sections(results),
         _methods_section(results, laid_out, found),
@@ -65,14 +65,13 @@ def write_report(
         Section(
             "The study file",
             ["With every setting written out; animat run makes the same lives of it again."],
-            code=(results.directory / STUDY).read_text("utf-8"),
+            code=results.text,
         ),
     ]
-    write_page(
-        path, f"Study: {results.study.name}", sections, lead=short, notices=notices(results, failed)
-    )
+    told = notices(progress, failed)
+    write_page(path, f"Study: {results.study.name}", sections, lead=short, notices=told)
     tell("Report", 1, 3)
-    return path, [*notices(results, failed), *short]
+    return path, [*told, *short]
 
 
 def _refuse(results: Results, path: Path, by: Sequence[str] | None) -> None:
@@ -98,6 +97,12 @@ def _lives(results: Results) -> tuple[pa.Table, pa.Table]:
     lives = lives.append_column("same_as", same.take(lives["case"].combine_chunks()))
     failed = pc.field("error").is_valid()
     return lives.filter(~failed), lives.filter(failed)
+
+
+def _progress(results: Results, *lives: pa.Table) -> Progress:
+    """Return how far a study was when its lives were read; cases of equal lives count once."""
+    own = [table.filter(pc.field("case") == pc.field("same_as")).num_rows for table in lives]
+    return Progress(sum(own), results.numbering["lives"].total)
 
 
 def _found(results: Results, lives: pa.Table, by: Sequence[str] | None) -> Findings | None:

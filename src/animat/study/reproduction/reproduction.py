@@ -26,8 +26,8 @@ from animat.study.design.study import Study, read_study
 from animat.study.living.plan import plan_of
 from animat.study.reproduction.experiment1 import Learnt, learnt
 from animat.study.running.run import run, threads
+from animat.study.store.description import MANIFEST, differences_from
 from animat.study.store.results import Results
-from animat.study.store.store import MANIFEST, differences_from
 from animat.world.world import World
 
 PAPERS_LIVES = 20

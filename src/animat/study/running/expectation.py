@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import time
+from concurrent.futures import ThreadPoolExecutor
 from io import BytesIO
 from typing import NamedTuple
 
@@ -13,9 +14,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from animat.life.life import Moment, TraceChoice, lived
-from animat.life.lives import CHUNK, live_chunks
+from animat.life.lives import CHUNK
 from animat.life.setting import Setting, bring_together
+from animat.life.summary import summary
 from animat.life.trace import table
+from animat.study.living.living import Company
 from animat.study.living.plan import Plan, world_of
 
 CASES = 6
@@ -43,7 +46,8 @@ class Expectation(NamedTuple):
     """What a study would cost: steps, seconds and bytes; equal lives are lived once.
 
     `learning_steps` are those of the `robots` whose networks AF has. `measured_lives` of
-    `measured_cases` cases gave the speed of all cores, how long lives are, and the room of a row.
+    `measured_cases` cases gave the speed of all cores, how long lives are, and the room of a row;
+    `errors` are those of them that failed.
     """
 
     lives: int
@@ -55,14 +59,19 @@ class Expectation(NamedTuple):
     trace_bytes: Range
     measured_lives: int
     measured_cases: int
+    errors: list[str]
 
 
 class Measured(NamedTuple):
-    """Some lives of a case: their table, the steps they were measured for, and the seconds."""
+    """Some lives of a case: their table, the steps they were measured for, and the seconds.
+
+    `errors`, an entry for each life, are None for those that did not fail.
+    """
 
     table: pa.Table
     cap: int
     seconds: float
+    errors: list[str | None]
 
     @property
     def steps(self) -> int:
@@ -73,10 +82,11 @@ class Measured(NamedTuple):
         """Return the mean lifespan up to `cap`.
 
         At least, if later steps are as deadly as those of the second half, which are less deadly
-        than the first; at most, if whoever was still alive lives up to the cap.
+        than the first; at most, if whoever was still alive lives up to the cap. A life that fails
+        ends there.
         """
         lifespans = self.table["lifespan"].to_numpy()
-        dead = ~self.table["censored"].to_numpy()
+        dead = ~self.table["censored"].to_numpy() | np.array(self.errors, bool)
         half = self.cap // 2
         hazard = int((dead & (lifespans > half)).sum()) / max((lifespans - half).clip(0).sum(), 1)
         left = float(cap - self.cap)
@@ -90,7 +100,8 @@ def expect(plan: Plan) -> Expectation:
     study = plan.study
     places = sorted({round(place) for place in np.linspace(0, len(plan.lived) - 1, CASES)})
     measured = [_measure(plan, place) for place in places]
-    speed = sum(one.steps for one in measured) / sum(one.seconds for one in measured)
+    # All may fail in their first step.
+    speed = max(1, sum(one.steps for one in measured)) / sum(one.seconds for one in measured)
     means = [
         one.mean_lifespan(plan.lived[place].steps)
         for one, place in zip(measured, places, strict=True)
@@ -107,6 +118,7 @@ def expect(plan: Plan) -> Expectation:
         trace_bytes=_traces(plan, mean),
         measured_lives=sum(one.table.num_rows for one in measured),
         measured_cases=len(measured),
+        errors=[error for one in measured for error in one.errors if error is not None],
     )
 
 
@@ -114,13 +126,17 @@ def _measure(plan: Plan, place: int) -> Measured:
     """Live some lives of a case on all cores, each a short while."""
     case, setting = plan.lived[place], _setting(plan, place)
     steps = min(case.steps, STEPS)
-    lives = CHUNK * (os.cpu_count() or 1)
+    cores = os.cpu_count() or 1
+    lives = case.first + np.arange(CHUNK * cores, dtype=np.uint64)
     # The first life is not counted: it compiles what is not on disk yet.
-    list(live_chunks(setting, case.seed, case.first, 1, 1))
+    Company(setting, case.seed, 1).live(lives[:1])
     started = time.perf_counter()
-    chunks = list(live_chunks(setting, case.seed, case.first, lives, steps))
+    with ThreadPoolExecutor(cores) as threads:
+        lived = list(threads.map(Company(setting, case.seed, steps).live, np.split(lives, cores)))
     seconds = time.perf_counter() - started
-    return Measured(pa.concat_tables(map(pa.table, chunks)).unify_dictionaries(), steps, seconds)
+    states = np.concatenate([one.states for one in lived])
+    errors = [error for one in lived for error in one.errors]
+    return Measured(pa.table(summary(setting, case.seed, lives, states)), steps, seconds, errors)
 
 
 def _setting(plan: Plan, place: int) -> Setting:
@@ -155,7 +171,11 @@ def _traces(plan: Plan, lifespan: Range) -> Range:
     case, setting = plan.lived[0], _setting(plan, 0)
     states, present = setting.begin(case.seed, np.array([case.first], np.uint64))
     birth = Moment(setting, case.seed, case.first, states, present)
-    parts = lived(birth, TRACED, TraceChoice())
+    try:
+        parts = list(lived(birth, TRACED, TraceChoice()))
+    except Exception:
+        # A function of the user's raises, of which `errors` tell; this life leaves no trace.
+        return Range(0.0, 0.0)
     trace = pa.concat_tables(table(part, setting.mind, setting.world) for part in parts)
     return rows * (record.lives * len(plan.lived) * _bytes_of_a_row(trace.unify_dictionaries()))
 

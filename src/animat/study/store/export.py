@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 from animat.files import check_writable, whole
 from animat.settings import SettingsError
 from animat.study.store.results import Results
-from animat.study.store.store import STUDY
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -97,7 +96,7 @@ def _write_netcdf(results: Results, path: Path) -> int:
     }
     manifest = {key: results.manifest[key] for key in ("study", "hash", "engine")}
     how = {
-        "study_file": (results.directory / STUDY).read_text("utf-8"),
+        "study_file": results.text,
         "runs": json.dumps(results.manifest["runs"]),
     }
     made: xr.Dataset = xr.Dataset(arrays, coordinates, manifest | how)

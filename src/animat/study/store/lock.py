@@ -76,7 +76,7 @@ def holder(lock: Path) -> tuple[Holder | None, bool]:
     """Return who holds a directory and True, or who held it last and died, or None, and False."""
     try:
         file = os.open(lock, os.O_RDONLY)
-    except FileNotFoundError:
+    except (FileNotFoundError, IsADirectoryError):
         return None, False
     try:
         try:
@@ -105,7 +105,7 @@ def _words(file: int) -> Holder | None:
     """Return the holder a lock file names; None for none, and for words that are torn."""
     try:
         return Holder(**json.loads(os.pread(file, LONGEST, 0)))
-    except (ValueError, TypeError):
+    except (ValueError, TypeError, RecursionError):
         return None
 
 

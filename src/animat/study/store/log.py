@@ -50,13 +50,13 @@ def logging_to(path: Path) -> Iterator[Log]:
 
 def entries(path: Path) -> Iterator[dict[str, Any]]:
     """Yield the events of a log, torn ones left out; none if there is no log. Raises OSError."""
-    if not path.exists():
+    if not path.is_file():
         return
     with path.open("rb") as file:
         for line in file:
             try:
                 entry = json.loads(line)
-            except ValueError:
+            except (ValueError, RecursionError):
                 continue
             if isinstance(entry, dict) and "event" in entry:
                 yield entry

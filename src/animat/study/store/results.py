@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -23,8 +24,8 @@ import pyarrow.parquet as pq
 from animat.settings import SettingsError, nearest, validated
 from animat.study.design.study import Study
 from animat.study.living.numbering import KINDS, Kind, Numbering, Part
-from animat.study.living.seal import seal_of
-from animat.study.store.store import CASES, COLUMNS, STUDY, read_manifest
+from animat.study.living.seal import Seal, seal_of
+from animat.study.store.description import read_cases, read_columns, read_manifest, read_text
 from animat.study.store.tally import Tally
 
 if TYPE_CHECKING:
@@ -61,12 +62,17 @@ class Results:
         """Read what the directory is about. Raises SettingsError."""
         self.directory = directory
         self.manifest: dict[str, Any] = read_manifest(directory)
-        self.cases: pa.Table = pq.read_table(directory / CASES)
+        self.cases: pa.Table = read_cases(directory)
 
     @cached_property
     def study(self) -> Study:
-        """The study, every setting written out."""
-        return validated(tomllib.loads((self.directory / STUDY).read_text("utf-8")), Study)
+        """The study, every setting written out. Raises SettingsError for one that has changed."""
+        return validated(tomllib.loads(self.text), Study)
+
+    @cached_property
+    def text(self) -> str:
+        """The text of the study file. Raises SettingsError for one that has changed."""
+        return read_text(self.directory, self.manifest)
 
     @property
     def factors(self) -> list[str]:
@@ -96,9 +102,8 @@ class Results:
         _, shares = np.unique(same, return_counts=True)
         tally = Tally(self.numbering, shares.tolist())
         for kind in KINDS:
-            for part in self._finished(kind):
-                if (seal := seal_of(self.directory / part.file)) is not None:
-                    tally.add(part, seal.steps, seal.failed)
+            for part, seal in self._finished(kind).items():
+                tally.add(part, seal.steps, seal.failed)
         return tally
 
     def dataset(self, kind: Kind = "lives") -> ds.Dataset:
@@ -106,8 +111,7 @@ class Results:
 
         Its lives stand under the case they were lived for, without factors.
         """
-        described = self.directory / kind / COLUMNS
-        columns = pq.read_schema(described) if described.exists() else pa.schema([])
+        columns = read_columns(self.directory, kind)
         files = [str(self.directory / part.file) for part in self._finished(kind)]
         return ds.dataset(files, schema=columns, format="parquet")
 
@@ -136,7 +140,12 @@ class Results:
         stored = [n for n in dataset.schema.names if columns is None or n in columns]
         factors = [n for n in self.factors if columns is None or n in columns]
         yield self._with_factors(dataset.schema.empty_table().select(stored), factors)
-        for batch in dataset.to_batches(columns=stored):
+        batches = dataset.to_batches(columns=stored)
+        while True:
+            with _whole(self.directory):
+                batch = next(batches, None)
+            if batch is None:
+                return
             yield self._with_factors(pa.table(batch), factors)
 
     def to_pandas(self) -> pd.DataFrame:
@@ -148,19 +157,21 @@ class Results:
 
         Without any it has no columns.
         """
-        return self.dataset("teachers").to_table()
+        with _whole(self.directory):
+            return self.dataset("teachers").to_table()
 
     def curves(self, kind: Kind = "lives") -> pa.Table:
         """Return the learning curves of lives, or of the robots that teach; empty without any."""
-        return self._beside("curves", f"{kind}-")
+        return self._beside("curves", kind, kind)
 
     def traces(self) -> pa.Table:
         """Return the traces of the lives that were recorded; empty without any."""
-        return self._beside("traces", "part-")
+        return self._beside("traces", "lives", "part")
 
     def failures(self, count: int) -> list[str]:
         """Return the first of the lives that failed, in words, at most `count` of them."""
-        failed = self.dataset().head(count, filter=pc.field("error").is_valid())
+        with _whole(self.directory):
+            failed = self.dataset().head(count, filter=pc.field("error").is_valid())
         told = []
         for row in failed.select(["case", "life", "error"]).to_pylist():
             values = self.cases.slice(row["case"], 1).to_pylist()[0]
@@ -168,13 +179,26 @@ class Results:
             told.append(f"case {row['case']}{factors}, life {row['life']}: {row['error']}")
         return told
 
-    def _finished(self, kind: Kind) -> list[Part]:
-        names = sorted(path.stem for path in (self.directory / kind).glob("part-*.parquet"))
-        return [Part(kind, int(name.removeprefix("part-"))) for name in names]
+    def _finished(self, kind: Kind) -> dict[Part, Seal]:
+        """Return the parts that are there, with their seals; what is torn or no part is not."""
+        numbering = self.numbering[kind]
+        found = {}
+        for path in sorted((self.directory / kind).glob("part-*.parquet")):
+            number = path.stem.removeprefix("part-")
+            part = Part(kind, int(number) if number.isdecimal() else numbering.parts)
+            if part.number >= numbering.parts or path != self.directory / part.file:
+                continue
+            seal = seal_of(path)
+            if seal is not None and seal.rows == numbering.rows(part.number):
+                found[part] = seal
+        return found
 
-    def _beside(self, folder: str, prefix: str) -> pa.Table:
-        files = sorted((self.directory / folder).glob(f"{prefix}*.parquet"))
-        tables = [pq.read_table(file) for file in files]
+    def _beside(self, folder: str, kind: Kind, prefix: str) -> pa.Table:
+        """Return what is kept beside the lives that are finished."""
+        names = (f"{prefix}-{part.number:06d}.parquet" for part in self._finished(kind))
+        files = [path for name in names if (path := self.directory / folder / name).exists()]
+        with _whole(self.directory):
+            tables = [pq.read_table(file) for file in files]
         if not tables:
             return pa.table({})
         return pa.concat_tables(tables, promote_options="default").unify_dictionaries()
@@ -213,6 +237,18 @@ class Results:
             columns[name] = coded.take(pa.array(cases))
         rest = {name: lives[name] for name in lives.column_names if name != "case"}
         return pa.table({**columns, **rest})
+
+
+@contextmanager
+def _whole(directory: Path) -> Iterator[None]:
+    """Say of what has changed on the disk how to find it. Raises SettingsError."""
+    try:
+        yield
+    except (OSError, pa.ArrowException) as error:
+        why = " ".join(str(error).split())
+        raise SettingsError(
+            f"{directory}: a file cannot be read ({why}); animat verify says which"
+        ) from None
 
 
 def _in_order(lives: pa.Table) -> pa.Table:

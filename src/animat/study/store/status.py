@@ -43,9 +43,11 @@ def _who(results: Results, pace: Pace) -> str:
 def _speed(directory: Path) -> tuple[int, float]:
     """Return the steps lived since the first part of the last run, and the seconds it took."""
     parts = _parts_of_last_run(entries(directory / LOG))
-    if not parts:
+    try:
+        return sum(p["steps"] for p in parts[1:]), parts[-1]["seconds"] - parts[0]["seconds"]
+    except (IndexError, KeyError, TypeError):
+        # Nothing is taken down yet, or somebody else has written into the log.
         return 0, 0.0
-    return sum(p["steps"] for p in parts[1:]), parts[-1]["seconds"] - parts[0]["seconds"]
 
 
 def _parts_of_last_run(events: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:

@@ -7,10 +7,6 @@ that could say otherwise. docs/running.md describes the directory.
 
 from __future__ import annotations
 
-import hashlib
-import io
-import json
-import tomllib
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -18,29 +14,20 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from animat.files import sync_directory, write_whole
-from animat.life.engine import ENGINE
 from animat.settings import SettingsError
-from animat.study.living.columns import schema
-from animat.study.living.numbering import KINDS, Part
+from animat.study.living.numbering import Part
 from animat.study.living.parts import Made, file_names, part_identity
 from animat.study.living.plan import Plan
 from animat.study.living.seal import Seal, seal_of
 from animat.study.living.teachers import read_networks
-from animat.study.provenance import provenance
-from animat.study.store.differences import differences
+from animat.study.store.description import CASES, FOLDERS, MANIFEST, STUDY, begin
 from animat.study.store.lock import Holder, RunError, hold
 from animat.study.store.log import Log, logging_to
 
-STUDY, MANIFEST, CASES = "study.toml", "manifest.json", "cases.parquet"
-LOCK, LOG, INPUTS = "lock", "log.jsonl", "inputs"
-COLUMNS = "_common_metadata"
-"""The file that tells the columns of parts before there is any; Parquet's own name for it."""
-
-FOLDERS = ("lives", "teachers", "curves", "traces", INPUTS)
+LOCK, LOG = "lock", "log.jsonl"
 
 
 class StoreError(RunError):
@@ -110,21 +97,11 @@ def open_store(directory: Path, plan: Plan) -> Iterator[Store]:
             dead = stack.enter_context(hold(directory / LOCK))
             log = stack.enter_context(logging_to(directory / LOG))
             _clear(directory)
-            _begin(directory, plan)
+            begin(directory, plan)
         except OSError as error:
-            why = error.strerror or error
-            raise SettingsError(f"{directory}: cannot be written: {why}") from None
+            where, why = error.filename or directory, error.strerror or error
+            raise SettingsError(f"{where}: cannot be written: {why}") from None
         yield Store(directory, plan, log, dead)
-
-
-def read_manifest(directory: Path) -> dict[str, Any]:
-    """Return the manifest of a results directory. Raises SettingsError where there is none."""
-    try:
-        return json.loads((directory / MANIFEST).read_text("utf-8"))
-    except (OSError, ValueError):
-        raise SettingsError(
-            f"{directory}: is no results directory: it has no whole {MANIFEST}"
-        ) from None
 
 
 def _refuse_what_is_not_ours(directory: Path) -> None:
@@ -148,98 +125,6 @@ def _make(directory: Path) -> None:
         sync_directory(one.parent)
 
 
-def _begin(directory: Path, plan: Plan) -> None:
-    """Say what the directory is for, or see that it is for this."""
-    made = provenance()
-    if (directory / MANIFEST).exists():
-        manifest = read_manifest(directory)
-        found = differences_from(directory, plan)
-        if found:
-            raise SettingsError(
-                *(f"{directory}: {line}" for line in found),
-                f"{directory}: is left as it is; --out gives this study a directory of its own",
-            )
-    else:
-        _describe(directory, plan)
-        manifest = {
-            "study": plan.study.name,
-            "hash": text_hash(plan.text),
-            "engine": ENGINE,
-            **{kind: plan.numbering[kind].written() for kind in KINDS},
-            "steps_to_learn": plan.steps_to_learn,
-            "inputs": _inputs(plan),
-            "runs": [],
-        }
-    manifest["runs"].append(made)
-    _write(directory / MANIFEST, json.dumps(manifest, indent=2) + "\n")
-
-
-def _describe(directory: Path, plan: Plan) -> None:
-    inputs = _inputs(plan)
-    for folder in _folders(plan):
-        (directory / folder).mkdir(exist_ok=True)
-    sync_directory(directory)
-    for path, copy in inputs.items():
-        write_whole(directory / INPUTS / copy, Path(path).read_bytes())
-    _write(directory / STUDY, plan.text)
-    cases = io.BytesIO()
-    pq.write_table(plan.case_table(), cases)
-    write_whole(directory / CASES, cases.getvalue())
-    for kind in KINDS:
-        if (directory / kind).exists():
-            columns = io.BytesIO()
-            pq.write_metadata(schema(plan, kind), columns)
-            write_whole(directory / kind / COLUMNS, columns.getvalue())
-
-
-def _folders(plan: Plan) -> list[str]:
-    """Return the folders that the results of a study need."""
-    needed = {
-        "lives": True,
-        "teachers": bool(plan.classes),
-        "curves": "learning_curve" in plan.study.measures,
-        "traces": plan.study.record is not None,
-        INPUTS: bool(plan.inputs),
-    }
-    return [folder for folder in FOLDERS if needed[folder]]
-
-
-def differences_from(directory: Path, plan: Plan) -> list[str]:
-    """Return a line for everything in which a study is not the one of a results directory.
-
-    Raises SettingsError where it is none.
-    """
-    manifest = read_manifest(directory)
-    if manifest["engine"] != ENGINE:
-        return [f"was lived by engine {manifest['engine']}, and this is engine {ENGINE}"]
-    there = (directory / STUDY).read_text("utf-8")
-    if there != plan.text:
-        found = differences(tomllib.loads(there), tomllib.loads(plan.text))
-        return found or ["has its factors in another order"]
-    now = _inputs(plan)
-    changed = [path for path, copy in manifest["inputs"].items() if now.get(path) != copy]
-    if changed:
-        return [
-            f"{path} has changed since; as it was it is in {directory / INPUTS}" for path in changed
-        ]
-    cases = pq.read_table(directory / CASES)
-    if cases["identity"].to_pylist() != plan.identities:
-        return ["its lives are not those that this animat lives of the same study"]
-    return []
-
-
-def _inputs(plan: Plan) -> dict[str, str]:
-    """Return the files a study draws on beside its own, each with the name of its copy."""
-    return {
-        path: f"{hashlib.sha256(Path(path).read_bytes()).hexdigest()[:8]}-{Path(path).name}"
-        for path in sorted(plan.inputs)
-    }
-
-
-def _write(path: Path, text: str) -> None:
-    write_whole(path, text.encode())
-
-
 def _clear(directory: Path) -> None:
     """Take away what writers that were killed left unfinished."""
     for folder in (directory, *(directory / name for name in FOLDERS)):
@@ -259,8 +144,3 @@ def _kept(path: Path) -> Iterator[None]:
         raise StoreError(
             f"{what}; what is finished is kept, and the same command goes on with it"
         ) from None
-
-
-def text_hash(text: str) -> str:
-    """Return the hash by which a study is known."""
-    return hashlib.sha256(text.encode()).hexdigest()

@@ -16,6 +16,8 @@ import pyarrow.parquet as pq
 
 from animat.life.engine import ENGINE
 from animat.progress import Telling
+from animat.settings import SettingsError
+from animat.study.living.columns import schema
 from animat.study.living.numbering import KINDS, Kind, Part, Piece
 from animat.study.living.parts import (
     classes_needed,
@@ -27,11 +29,25 @@ from animat.study.living.parts import (
 from animat.study.living.plan import Plan, plan_of
 from animat.study.living.seal import content, content_of, seal_of
 from animat.study.living.teachers import read_networks
+from animat.study.store.description import (
+    CASES,
+    COLUMNS,
+    FOLDERS,
+    INPUTS,
+    OTHER_LIVES,
+    WRITTEN_ANEW,
+    changed_inputs,
+    name_of_copy,
+    read_columns,
+    read_text,
+)
 from animat.study.store.results import Results
-from animat.study.store.store import CASES, STUDY, text_hash
 
 SAMPLE = 64
 """Parts of a kind from which a life is lived again; they lie evenly spread over all there are."""
+
+
+LIVED_AGAIN = "take it away, and animat run with the same study lives it again"
 
 
 class Verified(NamedTuple):
@@ -55,15 +71,22 @@ def verify(results: Results, tell: Telling) -> Verified:
             f"{directory}: was lived by engine {was}; this is engine {ENGINE}, whose lives differ"
         )
         return Verified(0, 0, 0, [wrong])
-    text = (directory / STUDY).read_text("utf-8")
-    if text_hash(text) != results.manifest["hash"]:
-        return Verified(0, 0, 0, [f"{directory / STUDY}: has changed since"])
+    try:
+        text = read_text(directory, results.manifest)
+    except SettingsError as error:
+        return Verified(0, 0, 0, list(error.problems))
+    if changed := changed_inputs(directory, results.manifest):
+        return Verified(0, 0, 0, changed)
     plan = plan_of(text)
-    if not pq.read_table(directory / CASES).equals(plan.case_table()):
+    if results.cases["identity"].to_pylist() != plan.identities:
+        return Verified(0, 0, 0, [f"{directory}: {OTHER_LIVES}"])
+    if not results.cases.equals(plan.case_table()):
         return Verified(0, 0, 0, [f"{directory / CASES}: has other cases than the study"])
     problems: list[str] = []
     good: set[Part] = set()
     parts = list(plan.all_parts())
+    problems += _wrong_descriptions(results, plan)
+    problems += _strays(directory, plan, parts)
     for part in parts:
         found = _read_again(directory, plan, part)
         problems += found or []
@@ -75,6 +98,34 @@ def verify(results: Results, tell: Telling) -> Verified:
         problems += _live_again(directory, plan, part)
         tell("Lives lived again", 1, len(sample))
     return Verified(len(good), len(parts), len(sample), problems)
+
+
+def _wrong_descriptions(results: Results, plan: Plan) -> Iterator[str]:
+    """Yield what is wrong with the columns told, and with the copies of the user's files."""
+    directory = results.directory
+    for kind in KINDS:
+        try:
+            columns = read_columns(directory, kind)
+        except SettingsError as error:
+            yield from error.problems
+            continue
+        if plan.numbering[kind].total and not columns.equals(schema(plan, kind)):
+            yield f"{directory / kind / COLUMNS}: has other columns than the study; {WRITTEN_ANEW}"
+    for path, copy in results.manifest["inputs"].items():
+        kept = directory / INPUTS / copy
+        if not kept.is_file() or name_of_copy(kept, Path(path).name) != copy:
+            yield f"{kept}: is no copy of {path} any more; {WRITTEN_ANEW}"
+
+
+def _strays(directory: Path, plan: Plan, parts: list[Part]) -> Iterator[str]:
+    """Yield the files among the parts that are none, which nobody reads."""
+    ours = {directory / name for part in parts for name in file_names(plan, part)}
+    ours |= {directory / kind / COLUMNS for kind in KINDS}
+    for folder in FOLDERS:
+        if folder != INPUTS:
+            for path in sorted((directory / folder).glob("[!.]*")):
+                if path not in ours:
+                    yield f"{path}: is none of the files of the study"
 
 
 def _read_again(directory: Path, plan: Plan, part: Part) -> list[str] | None:
@@ -93,9 +144,9 @@ def _wrong(directory: Path, plan: Plan, part: Part) -> Iterator[str]:
         elif seal is None:
             yield f"{path}: is torn"
         elif seal.identity != part_identity(plan, part):
-            yield f"{path}: holds other lives than it should"
+            yield f"{path}: holds other lives than it should; {LIVED_AGAIN}"
         elif content_of(path) != seal.content:
-            yield f"{path}: has changed since it was written"
+            yield f"{path}: has changed since it was written; {LIVED_AGAIN}"
 
 
 def _taught_by(plan: Plan, part: Part) -> set[Part]:
