@@ -22,6 +22,9 @@ import pyarrow.parquet as pq
 
 KEY = "animat"
 
+SOUGHT = ("case", "life", "step")
+"""Columns whose least and largest values stand in a file, so that a reader can pass it over."""
+
 
 @dataclass(frozen=True)
 class Seal:
@@ -42,7 +45,12 @@ def sealed(
     digest = hashlib.sha256()
     rows = 0
     texts = [field.name for field in schema if pa.types.is_dictionary(field.type)]
-    how: dict[str, Any] = {"compression": "zstd", "compression_level": 1, "use_dictionary": texts}
+    how: dict[str, Any] = {
+        "compression": "zstd",
+        "compression_level": 1,
+        "use_dictionary": texts,
+        "write_statistics": [name for name in SOUGHT if name in schema.names],
+    }
     with pq.ParquetWriter(file, schema, **how) as writer:
         for table in tables:
             writer.write_table(table)
