@@ -117,12 +117,12 @@ def first_lives(repeat: int) -> Table:
 
 def begun(start: str, runs: list[Spent], limit: float, compiled: int | None) -> dict[str, Any]:
     """Return a row of first lives."""
-    spent = median(run.processor for run in runs)
+    waited = median(run.clock for run in runs)
     return {
         "start": start,
-        "clock, s": median(run.clock for run in runs),
-        "processor, s": spent,
-        "target, s": Target(spent, limit, at_least=False),
+        "clock, s": waited,
+        "processor, s": median(run.processor for run in runs),
+        "target, s": Target(waited, limit, at_least=False),
         "says that it compiles": all("ompil" in run.said for run in runs),
         "functions compiled": compiled,
         "target, functions": None if compiled is None else Target(compiled, 0, at_least=False),
