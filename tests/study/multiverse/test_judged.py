@@ -11,6 +11,7 @@ from animat.report.multiverse.universes import CELLS, CLAIMS, EFFECTS
 from animat.settings import validated
 from animat.study.design.study import Study
 from animat.study.living.plan import Plan
+from animat.study.living.seal import seal_of, sealed
 from animat.study.multiverse import judged as module
 from animat.study.multiverse.judged import judge
 from animat.study.running.run import run, threads
@@ -104,11 +105,13 @@ def test_universes_whose_lives_or_robots_failed_are_left_out(plan, lived, judged
 def fail_one(folder, place):
     """Let the first or the last row (0 or -1) of a folder's tables be of a life that failed."""
     file = sorted(folder.glob("part-*.parquet"))[place]
-    rows = pq.read_table(file)
+    rows, seal = pq.read_table(file), seal_of(file)
+    assert seal is not None
     errors = [None] * rows.num_rows
     errors[place] = "a robot broke"
     column_place = rows.schema.get_field_index("error")
-    pq.write_table(rows.set_column(column_place, "error", pa.array(errors, pa.string())), file)
+    failed = rows.set_column(column_place, "error", pa.array(errors, pa.string()))
+    file.write_bytes(sealed([failed], rows.schema, seal.identity, seal.steps, failed=1))
     return rows.to_pylist()[place]
 
 

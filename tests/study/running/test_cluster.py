@@ -471,7 +471,7 @@ class TestNotThere:
 
     def test_a_worker(self, fails, secure):
         with watching(secure.address) as client:
-            address = min(client.nthreads())
+            address = min(until(client.nthreads))
         assert fails(address) == f"{address}: what answers there is no Dask scheduler but a Worker"
 
     def test_one_who_speaks_tls(self, fails, secure):
