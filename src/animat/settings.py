@@ -11,7 +11,7 @@ import tomllib
 from collections.abc import Iterator
 from datetime import date, time
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import IO, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -120,18 +120,29 @@ def validated(data: dict[str, Any], model: type[Model]) -> Model:
     return model.model_validate_json(json.dumps(data))
 
 
-def _text(path: Path, largest: int) -> str:
+def opened(path: Path, what: str) -> IO[bytes]:
+    """Return a file that is there to be read; `what` it should be is told of a directory.
+
+    Raises SettingsError if it cannot be opened.
+    """
     try:
-        with path.open("rb") as file:
-            content = file.read(largest + 1)
+        return path.open("rb")
     except FileNotFoundError:
         raise SettingsError(f"{path}: no such file") from None
     except IsADirectoryError:
-        raise SettingsError(f"{path}: is a directory, not a settings file") from None
+        raise SettingsError(f"{path}: is a directory, not a {what}") from None
     except OSError as error:
         raise SettingsError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError as error:
         raise SettingsError(f"{str(path)!r}: is no path: {error}") from None
+
+
+def _text(path: Path, largest: int) -> str:
+    with opened(path, "settings file") as file:
+        try:
+            content = file.read(largest + 1)
+        except OSError as error:
+            raise SettingsError(f"{path}: cannot be read: {error.strerror}") from None
     if len(content) > largest:
         raise SettingsError(
             f"{path}: is too large for a settings file: more than {largest / 1e6:g} MB"

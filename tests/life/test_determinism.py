@@ -4,13 +4,11 @@ batched, ordered and spread over threads.
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import re
 import subprocess
 import sys
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -26,20 +24,9 @@ from animat.mind.mind import Mind
 from animat.mind.physiology import PHYSIOLOGIES
 from animat.robot.khepera import MODELS
 
+from . import golden, processors
+
 HERE = Path(__file__).parent
-
-
-def loaded(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(f"beside_{name}", HERE / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-golden = loaded("golden")
-processors = loaded("processors")
 
 
 @pytest.fixture(scope="module")

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 import re
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numba
@@ -15,21 +13,11 @@ import pytest
 
 from animat.numerics.compiled import OPTIONS
 
+from . import machine_code
+
 HERE = Path(__file__).parent
 
 STEPS = ("animat.life.slices.live_slice", "animat.life.slices.live_recorded")
-
-
-def loaded(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(f"beside_{name}", HERE / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-machine_code = loaded("machine_code")
 
 
 @pytest.fixture(scope="module")

@@ -222,7 +222,8 @@ def test_every_impossible_combination_is_told_at_once():
 
 
 def test_a_drive_may_watch_rates_alone():
-    Mind(drives={"hunger": {"a": {}, "b": {"nutrition": -1.0}}}, behaviours=EAT)
+    mind = Mind(drives={"hunger": {"a": {}, "b": {"nutrition": -1.0}}}, behaviours=EAT)
+    assert (mind.drives["hunger"].a, mind.drives["hunger"].b) == ({}, {"nutrition": -1.0})
 
 
 @pytest.mark.parametrize("nothing", [{"drives": {}, "behaviours": EAT}, {"behaviours": {}}])

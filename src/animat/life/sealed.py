@@ -20,7 +20,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from pydantic import TypeAdapter, ValidationError
 
-from animat.settings import SettingsError
+from animat.settings import SettingsError, opened
 
 MAGIC = b"PAR1"
 """What a Parquet file begins and ends with."""
@@ -133,7 +133,7 @@ def unseal(path: Path) -> tuple[str, pq.ParquetFile]:
         SettingsError: it cannot be read, is no such file, is cut short, or was altered; it says
             where.
     """
-    with _opened(path) as file:
+    with opened(path, "recording") as file:
         try:
             seal = _seal(file)
             size = file.seek(0, os.SEEK_END)
@@ -219,16 +219,3 @@ def _unsealed(path: Path, file: IO[bytes], size: int) -> SettingsError:
 def _ends_well(file: IO[bytes]) -> bool:
     file.seek(-len(MAGIC), os.SEEK_END)
     return file.read() == MAGIC
-
-
-def _opened(path: Path) -> IO[bytes]:
-    try:
-        return path.open("rb")
-    except FileNotFoundError:
-        raise SettingsError(f"{path}: no such file") from None
-    except IsADirectoryError:
-        raise SettingsError(f"{path}: is a directory, not a recording") from None
-    except OSError as error:
-        raise SettingsError(f"{path}: cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        raise SettingsError(f"{str(path)!r}: is no path: {error}") from None

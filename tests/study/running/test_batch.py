@@ -9,8 +9,6 @@ import shlex
 import signal
 import subprocess
 import sys
-import threading
-import time
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -27,8 +25,9 @@ from animat.study.running.cluster import BATCH_SYSTEMS, cluster
 from animat.study.running.run import run
 from animat.study.running.worker import ClusterError
 
-LONGEST = 90.0
-"""Seconds to wait for what comes sooner or later, also where all cores are busy."""
+from .patience import LONGEST
+
+pytestmark = pytest.mark.usefixtures("bounded")
 
 SBATCH = """#!/bin/sh
 cp "$1" job.sh
@@ -66,22 +65,6 @@ def command(path: Path, script: str) -> None:
 
 def listed(path: Path) -> list[int]:
     return [int(line) for line in path.read_text().split()] if path.exists() else []
-
-
-@pytest.fixture(autouse=True)
-def bounded() -> Iterator[None]:
-    """End a test that hangs, and all tests with it."""
-
-    def end() -> None:
-        for _ in range(3):
-            os.kill(os.getpid(), signal.SIGINT)
-            time.sleep(1.0)
-
-    watchdog = threading.Timer(2 * LONGEST, end)
-    watchdog.daemon = True
-    watchdog.start()
-    yield
-    watchdog.cancel()
 
 
 @pytest.fixture(scope="module")

@@ -33,10 +33,11 @@ from animat.study.running.cluster import cluster
 from animat.study.running.run import run, threads
 from animat.study.running.worker import ClusterError, begun
 
-SOURCE = Path(animat.__file__).parents[1]
+from .patience import LONGEST
 
-LONGEST = 90.0
-"""Seconds to wait for what comes sooner or later, also where all cores are busy."""
+pytestmark = pytest.mark.usefixtures("bounded")
+
+SOURCE = Path(animat.__file__).parents[1]
 
 IMMORTAL = """
 name = "immortal"
@@ -64,22 +65,6 @@ def until(there: Callable[[], Any]) -> Any:
             return found
         time.sleep(0.05)
     raise AssertionError("it does not come")
-
-
-@pytest.fixture(autouse=True)
-def bounded() -> Iterator[None]:
-    """End a test that hangs, and all tests with it."""
-
-    def end() -> None:
-        for _ in range(3):
-            os.kill(os.getpid(), signal.SIGINT)
-            time.sleep(1.0)
-
-    watchdog = threading.Timer(2 * LONGEST, end)
-    watchdog.daemon = True
-    watchdog.start()
-    yield
-    watchdog.cancel()
 
 
 @pytest.fixture(autouse=True)
