@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 import traceback
 from io import TextIOWrapper
 from typing import NoReturn
@@ -21,6 +22,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+KERNEL_THREAD = "animat"
+"""The name of the threads of `animat.numerics.threads`, which may still be at work at the end."""
 
 DONE, FAILED, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -58,7 +62,8 @@ def _explain(error: Exception) -> NoReturn:
     if usage := getattr(error, "format_message", None):
         _leave(usage(), WRONG_INPUT)
     if isinstance(error, SettingsError):
-        _leave(str(error), WRONG_INPUT)
+        failed = type(error).__name__ == "FailedLifeError"  # its module takes Numba to import
+        _leave(str(error), FAILED if failed else WRONG_INPUT)
     if isinstance(error, RunError):
         _leave(str(error), FAILED)
     what = str(error)
@@ -76,4 +81,8 @@ def _leave(text: str, code: int) -> NoReturn:
     except OSError:
         # Python would try once more at its end, and complain.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if any(thread.name == KERNEL_THREAD for thread in threading.enumerate()):
+        # Compiled code that never returns must not see Python taken down around it.
+        sys.stderr.flush()
+        os._exit(code)
     sys.exit(code)

@@ -8,7 +8,14 @@ from typing import Annotated
 import typer
 
 from animat.cli.app import app
-from animat.cli.options import Debug, Seed, SettingsFile, compiling_told, settings_of
+from animat.cli.options import (
+    CheckFunctions,
+    Debug,
+    Seed,
+    SettingsFile,
+    compiling_told,
+    settings_of,
+)
 
 BY_RECORDING = {
     "world": "--world",
@@ -62,6 +69,7 @@ def life(
         int | None, typer.Option(help="From after so many steps; its last one unless given.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace these files.")] = False,
+    check_functions: CheckFunctions = False,
     debug: Debug = False,
 ) -> None:
     """Live one life, and say how it went and why it ended."""
@@ -70,7 +78,20 @@ def life(
 
     _check_together(context)
     chosen = settings_of(settings, physiology=physiology, agent=agent, world=world)
-    asked = OneLife(chosen, seed, index, steps, trace, figure, force, record, every, source, at)
+    asked = OneLife(
+        chosen,
+        seed,
+        index,
+        steps,
+        trace,
+        figure,
+        force,
+        record,
+        every,
+        source,
+        at,
+        check_functions,
+    )
     with compiling_told(), telling() as tell:
         lived = live_one(asked, tell)
     for line in story(lived):

@@ -32,6 +32,11 @@ Threads = Annotated[int | None, typer.Option(help="As many as cores unless given
 Quick = Annotated[bool, typer.Option("--quick", help="Small, for a look.")]
 Seed = Annotated[int, typer.Option(help="The seed of everything random.", min=0, max=2**63 - 1)]
 
+CheckFunctions = Annotated[
+    bool,
+    typer.Option("--check-functions", help="Check every index that custom functions use; slower."),
+]
+
 # Only declared: whoever explains an error looks for it, as an unknown option ends the reading.
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 

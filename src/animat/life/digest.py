@@ -7,8 +7,11 @@ import hashlib
 import numpy as np
 from numpy.typing import NDArray
 
-SCRATCH = ("readings", "hidden", "aftermath", "drives_after", "changes_after")
-"""The fields of a state that hold nothing from one step to the next; no digest takes them in."""
+SCRATCH = (
+    *("readings", "hidden", "aftermath", "drives_after", "changes_after"),
+    *("asked", "failure", "given"),
+)
+"""The fields of a state that hold nothing that a later step reads; no digest takes them in."""
 
 
 def digest(state: np.record, present: NDArray[np.uint8]) -> str:

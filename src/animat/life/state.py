@@ -97,6 +97,10 @@ def state_dtype(
                 ("aftermath", real, (variables,)),
                 ("drives_after", real, (drives,)),
                 ("changes_after", real, (variables,)),
+                # of custom functions: see animat.life.failure
+                ("asked", whole),  # the role that was called last
+                ("failure", whole),  # the role that ended the life
+                ("given", real, (2,)),  # what it gave
             ],
         ),
         align=True,

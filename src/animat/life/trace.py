@@ -28,14 +28,17 @@ def row_dtype(state: np.dtype) -> np.dtype:
 
 
 @compiled
-def record_decision(row, state):
-    """Write down what led to the motor commands, before they are followed."""
+def record_decision(row, state, limit):
+    """Write down what led to the motor commands, before they are followed.
+
+    The motors take no command beyond +-`limit`: written down is what they are driven by.
+    """
     row.step = state.step
     row.x = state.x
     row.y = state.y
     row.heading = state.heading
-    row.left = state.left
-    row.right = state.right
+    row.left = min(max(state.left, -limit), limit)
+    row.right = min(max(state.right, -limit), limit)
     row.mode = state.mode
     row.behaviour = state.behaviour
     row.site = state.site

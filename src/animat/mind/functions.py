@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import importlib.util
 import inspect
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 from numba import types
 from numba.core.dispatcher import Dispatcher
 
+from animat.numerics.checked import SelfCallError, checked
 from animat.numerics.compiled import compiled
 from animat.settings import SettingsError
 
@@ -33,20 +36,26 @@ SIGNATURES = {
 REAL, WHOLE = types.float64, types.int64
 REALS, WHOLES = types.Array(REAL, 1, "C"), types.Array(WHOLE, 1, "C")
 TABLE = types.Array(REAL, 2, "C")
+GIVEN, GIVEN_WHOLES, GIVEN_TABLE = (
+    types.Array(one.dtype, one.ndim, one.layout, readonly=True) for one in (REALS, WHOLES, TABLE)
+)
 
 ARGUMENTS = {
     "law": (REAL,) * 5,
-    "drives": (REALS, REALS, REALS, REALS, TABLE, TABLE, REALS),
-    "selector": (REALS, REALS, WHOLES, REAL),
-    "estimator": (REALS, REALS, REALS),
-    "learner": (REALS, REALS, REALS, REAL, REAL, WHOLE, types.boolean),
-    "wander": (WHOLES, REALS, REALS, REALS, REAL, REAL, WHOLE, WHOLE),
+    "drives": (GIVEN, GIVEN, GIVEN, GIVEN, GIVEN_TABLE, GIVEN_TABLE, REALS),
+    "selector": (GIVEN, GIVEN, GIVEN_WHOLES, REAL),
+    "estimator": (GIVEN, GIVEN, REALS),
+    "learner": (GIVEN, REALS, REALS, REAL, REAL, WHOLE, types.boolean),
+    "wander": (GIVEN_WHOLES, GIVEN, GIVEN, REALS, REAL, REAL, WHOLE, WHOLE),
 }
-"""What the step hands to each replaceable function."""
-
+"""What each replaceable function is given. Only `out`, `weights`, `hidden` and `memory` can be
+written to; the other arrays are shared by lives on several threads."""
 
 ALLOCATION = ("NRT required", "Only accept returning of array")
 """What the compiler says of a function that needs memory of its own."""
+
+
+_TWINS: WeakKeyDictionary[Any, Any] = WeakKeyDictionary()
 
 
 class FunctionError(SettingsError):
@@ -103,12 +112,12 @@ BUILT_IN = Functions(
 )
 
 
-def resolve(role: str, function: str | Callable[..., Any]) -> Any:
-    """Return the compiled form of a user's function for a role of `SIGNATURES`.
+def resolve(role: str, function: str | Callable[..., Any], *, check: bool = False) -> Any:
+    """Return the compiled form of a custom function for a role of `SIGNATURES`.
 
     `function` is a Python function, or a text "FILE.py:NAME". It is compiled alone first, because
-    the compiler says far less clearly what is wrong with it in the midst of a step. Raises
-    FunctionError.
+    the compiler says far less clearly what is wrong with it in the midst of a step. With `check`,
+    every index it uses is checked whenever it is called. Raises FunctionError.
     """
     own: Any = _load(role, function) if isinstance(function, str) else function
     if isinstance(own, Dispatcher):
@@ -116,8 +125,14 @@ def resolve(role: str, function: str | Callable[..., Any]) -> Any:
     _check_signature(role, own)
     dispatcher = compiled(own)
     if isinstance(dispatcher, Dispatcher):
-        _check_compiles(role, dispatcher)
+        twin = _check_compiles(role, dispatcher)
+        return twin if check else dispatcher
     return dispatcher
+
+
+def checked_twin(function: Any) -> Any:
+    """Return a resolved function with every index checked."""
+    return _TWINS.get(function, function)
 
 
 def _load(role: str, address: str) -> Callable[..., Any]:
@@ -158,17 +173,67 @@ def _check_signature(role: str, function: Callable[..., Any]) -> None:
         )
 
 
-def _check_compiles(role: str, dispatcher: Any) -> None:
+def _check_compiles(role: str, dispatcher: Any) -> Any:
+    """Return the twin of a custom function that checks every index, compiled for its role."""
     name = dispatcher.__name__
+    twins: dict[Any, Any] = {}
     try:
-        dispatcher.compile(ARGUMENTS[role])
+        twin: Any = checked(dispatcher, twins)
+        twin.compile(ARGUMENTS[role])
     except Exception as error:
-        raise FunctionError(
-            f"{role}: {name} does not compile: {_why(error)}; wanted {SIGNATURES[role]}"
-        ) from error
-    result = dispatcher.overloads[ARGUMENTS[role]].signature.return_type
+        why = f"does not compile: {_why(error)}"
+        if "readonly" in str(error) and _compiles_if_all_may_be_written(role, dispatcher):
+            why = f"changes what it is given{_line(error)}; {_may_write(role)}"
+        raise FunctionError(f"{role}: {name} {why}; wanted {SIGNATURES[role]}") from error
+    result = twin.overloads[ARGUMENTS[role]].signature.return_type
     if not _suits(role, result):
         raise FunctionError(f"{role}: {name} returns {result}; wanted {SIGNATURES[role]}")
+    if any(_uses_iterator(each) for each in twins.values()):
+        raise FunctionError(
+            f"{role}: {name} uses flat or nditer, which could change what it is given; use indices"
+        )
+    _TWINS[dispatcher] = _TWINS[twin] = twin
+    return twin
+
+
+def _compiles_if_all_may_be_written(role: str, dispatcher: Any) -> bool:
+    writable = tuple(
+        each.copy(readonly=False) if isinstance(each, types.Array) else each
+        for each in ARGUMENTS[role]
+    )
+    try:
+        checked(dispatcher, {}).compile(writable)
+    except Exception:
+        return False
+    return True
+
+
+def _uses_iterator(dispatcher: Any) -> bool:
+    """Tell whether a compiled function walks an array by what ignores that it is read only."""
+    walks = (types.NumpyFlatType, types.NumpyNdIterType)
+    return any(
+        isinstance(each, walks)
+        for overload in dispatcher.overloads.values()
+        for each in overload.type_annotation.typemap.values()
+    )
+
+
+def _may_write(role: str) -> str:
+    """Return what a function of a role may write to, in words."""
+    signature = SIGNATURES[role]
+    names = signature[signature.index("(") + 1 : signature.index(")")].split(", ")
+    writable = [
+        name
+        for name, each in zip(names, ARGUMENTS[role], strict=True)
+        if isinstance(each, types.Array) and each.mutable
+    ]
+    return f"it may write to {' and '.join(writable) or 'nothing'}"
+
+
+def _line(error: Exception) -> str:
+    """Return the line of the source that the compiler names last, in words."""
+    lines = re.findall(r'File "[^"]*", line (\d+)', str(error))
+    return f" in line {lines[-1]}" if lines else ""
 
 
 def _suits(role: str, result: types.Type) -> bool:
@@ -189,6 +254,8 @@ def _is_number(result: types.Type) -> bool:
 
 def _why(error: Exception) -> str:
     """Return what the compiler has against a function, on one line."""
+    if isinstance(error, SelfCallError):
+        return f"{error} calls itself, for which a step has no room"
     if any(sign in str(error) for sign in ALLOCATION):
         return "it makes a new array, list or other object, for which a step has no room"
     lines = [line.strip() for line in str(error).splitlines()]

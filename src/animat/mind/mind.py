@@ -231,10 +231,13 @@ class Mind(Settings):
                 own[role] = value
         return own
 
-    def functions(self) -> Functions:
-        """Return the user's own functions, compiled. Raises FunctionError."""
+    def functions(self, *, check: bool = False) -> Functions:
+        """Return the custom functions, compiled. With `check`, they check every index they use.
+
+        Raises FunctionError.
+        """
         own = self.own_functions()
-        return BUILT_IN._replace(**{role: resolve(role, own[role]) for role in own})
+        return BUILT_IN._replace(**{role: resolve(role, own[role], check=check) for role in own})
 
     def weight_count(self, feature_count: int) -> int:
         """Return the number of weights of one of its networks."""

@@ -41,7 +41,8 @@ class OneLife(NamedTuple):
 
     It is born with the settings, seed and index, or, if there is a `source`, taken from that
     recording where it has lived `at` steps, all that were recorded if None. It is lived up to
-    `steps`: 300,000 if None, or what the recording says. `every` is EVERY if None.
+    `steps`: 300,000 if None, or what the recording says. `every` is EVERY if None. With
+    `check_functions`, custom functions check every index they use.
     """
 
     settings: LifeSettings
@@ -55,6 +56,7 @@ class OneLife(NamedTuple):
     every: int | None = None
     source: Path | None = None
     at: int | None = None
+    check_functions: bool = False
 
 
 def live_one(asked: OneLife, tell: Telling) -> Life:
@@ -102,14 +104,17 @@ def record(
     steps: int = 300_000,
     every: int = EVERY,
     progress: Progress | None = None,
+    check_functions: bool = False,
 ) -> Life:
     """Live one life as `live` does, write its recording to `path`, and return it without a trace.
 
     Every `every` steps the whole state is kept. A file that was there is replaced, when the new
-    one is whole. Raises SettingsError for what cannot be lived, recorded or written.
+    one is whole. Raises SettingsError for what cannot be lived, recorded or written; a life that
+    fails (FailedLifeError) leaves no file.
     """
     check(seed, life, steps)
-    moment = birth(bring_together(mind, world, robot), seed, life)
+    setting = bring_together(mind, world, robot, check_functions=check_functions)
+    moment = birth(setting, seed, life)
     return write_recording(
         Path(path), moment, steps=steps, every=every, made=provenance(), progress=progress
     )
@@ -165,9 +170,12 @@ def _born(asked: OneLife, tell: Telling) -> tuple[Moment, int]:
             life=asked.index,
             steps=LEARNING_STEPS,
             progress=lambda more: tell("Learning first, steps", more, LEARNING_STEPS),
+            check_functions=asked.check_functions,
         )
         mind = mind.model_copy(update={"networks": learnt.networks})
-    return birth(bring_together(mind, world, settings.robot), asked.seed, asked.index), steps
+    check = asked.check_functions
+    setting = bring_together(mind, world, settings.robot, check_functions=check)
+    return birth(setting, asked.seed, asked.index), steps
 
 
 def _recorded(source: Path, asked: OneLife) -> tuple[Moment, int]:
@@ -176,6 +184,10 @@ def _recorded(source: Path, asked: OneLife) -> tuple[Moment, int]:
     head = recording.head
     steps = head.steps if asked.steps is None else asked.steps
     moment = recording.at(head.last if asked.at is None else asked.at)
+    if asked.check_functions:
+        setting = moment.setting
+        checked = setting.mind.functions(check=True)
+        moment = moment._replace(setting=setting._replace(functions=checked))
     if moment.state.dead:
         raise LifeError(f"{source}: the life ended at step {moment.step}; go on from before, --at")
     if steps <= moment.step:

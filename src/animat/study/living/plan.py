@@ -57,9 +57,13 @@ class Plan:
     SettingsError where anything of the study cannot be lived.
     """
 
-    def __init__(self, study: Study) -> None:
-        """Number the cases, the robots that teach, and their parts."""
+    def __init__(self, study: Study, check_functions: bool = False) -> None:
+        """Number the cases, the robots that teach, and their parts.
+
+        With `check_functions`, custom functions check every index they use.
+        """
         self.study = study
+        self.check_functions = check_functions
         self.text = study.to_toml()
         self.cases = cases(study)
         self.inputs: set[str] = set()
@@ -184,16 +188,16 @@ class Plan:
         key = tuple(map(str, (*laws, *others, *learning)))
         with self._lock:
             if key not in self._functions:
-                self._functions[key] = mind.functions()
+                self._functions[key] = mind.functions(check=self.check_functions)
                 own = (each.rpartition(":")[0] for each in key if ".py:" in each)
                 self.inputs.update(own)
             return self._functions[key]
 
 
 @lru_cache(maxsize=2)
-def plan_of(text: str) -> Plan:
+def plan_of(text: str, check_functions: bool = False) -> Plan:
     """Return the plan of a study given as the text of its file."""
-    return Plan(validated(tomllib.loads(text), Study))
+    return Plan(validated(tomllib.loads(text), Study), check_functions)
 
 
 def forget() -> None:

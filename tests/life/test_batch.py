@@ -6,13 +6,13 @@ from threading import Event
 
 import numpy as np
 import pytest
+from animat.study.living.living import EPISODES, Company, StoppedError
 
 from animat.life.life import live
-from animat.life.lives import live_on, live_states
+from animat.life.lives import live_states
 from animat.life.setting import LifeError, bring_together
 from animat.mind.mind import Mind
 from animat.study.living import living as module
-from animat.study.living.living import EPISODES, Company, StoppedError
 from animat.world.world import World
 
 STEPS, SEED = 2_500, 3
@@ -91,9 +91,9 @@ def test_an_error_is_told_with_its_step(failing):
         told, _, step = error.rpartition(", in step ")
         assert told == "ValueError: lost, far from home"
         states, present = setting.begin(SEED, LIVES[n : n + 1])
-        live_on(setting, SEED, LIVES[n : n + 1], states, present, int(step))
+        advance(setting, SEED, LIVES[n : n + 1], states, present, int(step))
         with pytest.raises(ValueError, match="far from home"):
-            live_on(setting, SEED, LIVES[n : n + 1], states, present, int(step) + 1)
+            advance(setting, SEED, LIVES[n : n + 1], states, present, int(step) + 1)
 
 
 def test_what_is_no_number_is_told_since_its_first_step(failing):
@@ -109,9 +109,9 @@ def test_what_is_no_number_is_told_since_its_first_step(failing):
             told, _, step = error.partition(" not finite since step ")
             assert set(told.split(", ")) == names
             states, present = setting.begin(SEED, LIVES[n : n + 1])
-            live_on(setting, SEED, LIVES[n : n + 1], states, present, int(step))
+            advance(setting, SEED, LIVES[n : n + 1], states, present, int(step))
             assert np.isfinite(states["drive_sum"]).all()
-            live_on(setting, SEED, LIVES[n : n + 1], states, present, int(step) + 1)
+            advance(setting, SEED, LIVES[n : n + 1], states, present, int(step) + 1)
             assert not np.isfinite(states["drive_sum"]).any()
 
 
@@ -176,7 +176,7 @@ def test_snapshots_are_states_before_the_end():
         [20_000, 20_000],
     ]
     states, present = watched.earlier[1]
-    live_on(own.setting, SEED, LIVES[:2], states, present, 25_000)
+    advance(own.setting, SEED, LIVES[:2], states, present, 25_000)
     assert states.tobytes() == watched.states.tobytes()
 
 
