@@ -81,7 +81,7 @@ def _leave(text: str, code: int) -> NoReturn:
     except OSError:
         # Python would try once more at its end, and complain.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    if any(thread.name == KERNEL_THREAD for thread in threading.enumerate()):
+    if code == INTERRUPTED and any(t.name == KERNEL_THREAD for t in threading.enumerate()):
         # Compiled code that never returns must not see Python taken down around it.
         sys.stderr.flush()
         os._exit(code)

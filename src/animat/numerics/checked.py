@@ -38,8 +38,9 @@ def checked(function: Any, twins: dict[Any, Any]) -> Any:
     copy = FunctionType(source.__code__, around, source.__name__, source.__defaults__, cells)
     copy.__kwdefaults__ = source.__kwdefaults__
     copy.__qualname__, copy.__module__ = source.__qualname__, source.__module__
-    options = {name: value for name, value in original.targetoptions.items() if name != "nopython"}
-    twin: Any = numba.njit(**{**options, "boundscheck": True})(copy)
+    options: dict[str, Any] = {**original.targetoptions, "boundscheck": True}
+    del options["nopython"]
+    twin: Any = numba.njit(**options)(copy)
     twin._set_uuid(f"checked {original._uuid}")
     twins[source] = twin
     return twin

@@ -15,7 +15,7 @@ from functools import partial
 from queue import Empty, SimpleQueue
 from typing import Any, TypeVar
 
-import numba
+from numba.core import config
 
 Result = TypeVar("Result")
 
@@ -101,7 +101,7 @@ def attempt(call: Callable[[], Result]) -> tuple[Result | None, BaseException | 
             return None, error
 
     away = threading.current_thread() is not threading.main_thread()
-    if away or numba.config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
+    if away or config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
         return guarded()
     with KernelThreads(1) as threads:
         return threads.submit(guarded).result()

@@ -173,8 +173,7 @@ def _born(asked: OneLife, tell: Telling) -> tuple[Moment, int]:
             check_functions=asked.check_functions,
         )
         mind = mind.model_copy(update={"networks": learnt.networks})
-    check = asked.check_functions
-    setting = bring_together(mind, world, settings.robot, check_functions=check)
+    setting = bring_together(mind, world, settings.robot, check_functions=asked.check_functions)
     return birth(setting, asked.seed, asked.index), steps
 
 

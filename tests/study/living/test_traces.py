@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from animat.life import batch as module
 from animat.life.batch import Batch
 from animat.life.life import TraceChoice, live
 from animat.life.setting import bring_together
@@ -20,7 +21,7 @@ LIVES = np.arange(4, 9, dtype=np.uint64)
 @pytest.mark.parametrize("settings", [{}, {"death": False}])
 def test_they_are_those_of_single_lives(what, every, settings, monkeypatch):
     """However often lives were looked at, whether or not they died before the cap."""
-    monkeypatch.setattr(living, "LOOK_EVERY", every)
+    monkeypatch.setattr(module, "LOOK_EVERY", every)
     mind, steps = Mind(**settings), 2_500
     recording = TraceChoice.parse(what)
     assert recording is not None
