@@ -9,6 +9,8 @@ from typing import Any
 import numba
 from numba.core.dispatcher import Dispatcher
 
+from animat.numerics.inlined import InlinedDispatcher, inlined
+
 
 class SelfCallError(ValueError):
     """A function calls itself, directly or through others."""
@@ -39,8 +41,11 @@ def checked(function: Any, twins: dict[Any, Any]) -> Any:
     copy.__kwdefaults__ = source.__kwdefaults__
     copy.__qualname__, copy.__module__ = source.__qualname__, source.__module__
     options: dict[str, Any] = {**original.targetoptions, "boundscheck": True}
-    del options["nopython"]
-    twin: Any = numba.njit(**options)(copy)
+    if isinstance(original, InlinedDispatcher):
+        twin: Any = inlined(copy, **options)
+    else:
+        del options["nopython"]
+        twin = numba.njit(**options)(copy)
     twin._set_uuid(f"checked {original._uuid}")
     twins[source] = twin
     return twin
