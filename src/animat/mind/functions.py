@@ -7,7 +7,6 @@ fields that are not the user's hold a function that is never called.
 
 from __future__ import annotations
 
-import importlib.util
 import inspect
 from collections.abc import Callable
 from pathlib import Path
@@ -16,7 +15,9 @@ from typing import Any, NamedTuple
 from numba import types
 from numba.core.dispatcher import Dispatcher
 
+from animat.mind.loading import load
 from animat.numerics.compiled import compiled
+from animat.numerics.snapshot import snapshot
 from animat.settings import SettingsError
 
 SIGNATURES = {
@@ -106,15 +107,14 @@ BUILT_IN = Functions(
 def resolve(role: str, function: str | Callable[..., Any]) -> Any:
     """Return the compiled form of a user's function for a role of `SIGNATURES`.
 
-    `function` is a Python function, or a text "FILE.py:NAME". It is compiled alone first, because
-    the compiler says far less clearly what is wrong with it in the midst of a step. Raises
+    `function` is a Python function, or a text "FILE.py:NAME". What it computes by counts as it is
+    now, not as it was when a mind was made; see `snapshot`. It is compiled alone first, because the
+    compiler says far less clearly what is wrong with it in the midst of a step. Raises
     FunctionError.
     """
     own: Any = _load(role, function) if isinstance(function, str) else function
-    if isinstance(own, Dispatcher):
-        own = own.py_func
-    _check_signature(role, own)
-    dispatcher = compiled(own)
+    _check_signature(role, own.py_func if isinstance(own, Dispatcher) else own)
+    dispatcher = snapshot(own)
     if isinstance(dispatcher, Dispatcher):
         _check_compiles(role, dispatcher)
     return dispatcher
@@ -128,12 +128,10 @@ def _load(role: str, address: str) -> Callable[..., Any]:
             f'{role} = "{address}": no such built-in and no such file;'
             f" give FILE.py:NAME of a function {SIGNATURES[role]}"
         )
-    spec = importlib.util.spec_from_file_location(path.stem, path.resolve())
-    if spec is None or spec.loader is None:
+    if path.suffix != ".py":
         raise FunctionError(f'{role} = "{address}": {path} is not a Python file')
-    module = importlib.util.module_from_spec(spec)
     try:
-        spec.loader.exec_module(module)
+        module = load(path)
     except (Exception, SystemExit) as error:
         raise FunctionError(f"{role}: {path} does not run: {_one_line(error)}") from error
     found = getattr(module, name, None)
