@@ -51,8 +51,9 @@ OPTIONS = {"fastmath": False, "error_model": "python", "parallel": False, "bound
 STEP_OPTIONS: WeakSet[Any] = WeakSet()
 """The functions of `compiled`, which have options of their own, also where nothing is compiled."""
 
-WALKED = (bool, int, float, complex, str, bytes, type(None), np.ndarray, np.generic, np.dtype)
-WALKED = (*WALKED, tuple, list, dict, set, frozenset, range, slice, Enum, EnumMeta, CodeType)
+PLAIN = (bool, int, float, complex, str, bytes, type(None), tuple, CodeType)
+WALKED = (*PLAIN, np.ndarray, np.generic, np.dtype, list, dict, set, frozenset, range, slice)
+WALKED = (*WALKED, Enum, EnumMeta)
 """The values that have an identity of their own, beside functions and what libraries name."""
 
 
@@ -207,6 +208,11 @@ class _Walk:
     def value(self, value: Any, where: str) -> None:
         """Take a value into the hash; `where` is how it is called if it cannot be."""
         kind = type(value)
+        if kind not in PLAIN:
+            if (name := library_name(value)) is not None:
+                return self._write(f"library {name}")
+            if (function := python_function(value)) is not None:
+                return self._function(value, function, where)
         self._write(kind.__name__)
         if kind in (int, bool):
             self._write(hex(value))
@@ -216,10 +222,6 @@ class _Walk:
             self._write(value)
         elif value is None or value is ...:
             pass
-        elif (name := library_name(value)) is not None:
-            self._write(name)
-        elif (function := python_function(value)) is not None:
-            self._function(value, function, where)
         elif isinstance(value, np.ndarray | np.generic):
             self._array(np.asarray(value), kind, where)
         elif isinstance(value, np.dtype | types.Number | types.Boolean):
@@ -232,6 +234,7 @@ class _Walk:
             self.inside.add(id(value))
             self._composed(value, where)
             self.inside.discard(id(value))
+        return None
 
     def _composed(self, value: Any, where: str) -> None:
         if isinstance(value, Enum):
