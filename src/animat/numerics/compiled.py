@@ -27,11 +27,12 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
-from numba.core import utils
+from numba.core import config, utils
 from numba.core.caching import FunctionCache
 from numba.core.event import Event, Listener, install_listener
 
 from animat.numerics.identity import STEP_OPTIONS
+from animat.numerics.inlined import inlined
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -49,7 +50,8 @@ sys.modules.setdefault(utils._dynamic_modname, utils._dynamic_module)
 
 def compiled(function: Function) -> Function:
     """Compile a function of a step; with `NUMBA_DISABLE_JIT=1` it stays plain Python."""
-    return _identified(numba.njit(forceinline=True, **OPTIONS)(function), function)
+    uncompiled = getattr(config, "DISABLE_JIT", False)
+    return _identified(function if uncompiled else inlined(function, **OPTIONS), function)
 
 
 def kernel(function: Function) -> Function:
