@@ -83,7 +83,9 @@ def test_two_files_of_two_folders_never_share_a_neighbour(tmp_path_factory, orde
 
 
 def test_a_neighbour_wins_over_python_s_own_module_and_for_the_file_alone(tmp_path):
-    own = "import statistics, fractions\ndef law():\n    return statistics.K, fractions.Fraction(1)\n"
+    own = (
+        "import statistics, fractions\ndef law():\n    return statistics.K, fractions.Fraction(1)\n"
+    )
     assert value(written(tmp_path, own, 7.0)) == (7.0, 1)
     import statistics
 

@@ -133,7 +133,9 @@ class Laboratory:
         self.package = folder / "animat"
         real = Path(animat.__file__).parent
         shutil.copytree(
-            real / "numerics", self.package / "numerics", ignore=shutil.ignore_patterns("__pycache__")
+            real / "numerics",
+            self.package / "numerics",
+            ignore=shutil.ignore_patterns("__pycache__"),
         )
         for module in ("settings.py", "mistakes.py"):
             shutil.copy(real / module, self.package)

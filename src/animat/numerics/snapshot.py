@@ -4,7 +4,7 @@ Numba reads globals once, when it compiles, and a compiled helper keeps its mach
 function is copied before it is compiled, and with it the compiled functions that it calls, the
 arrays and the modules that it names: what is rebound, reloaded or changed in place later is not
 seen by the copy, and the next copy, of another identity, is compiled anew. Functions of equal
-identity have the same copy.
+identity and the same files have one copy.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from animat.numerics.identity import (
 )
 from animat.settings import SettingsError
 
-_SNAPSHOTS: dict[str, Any] = {}
+_SNAPSHOTS: dict[Identity, Any] = {}
 _IDENTITIES: WeakKeyDictionary[Any, Identity] = WeakKeyDictionary()
 
 
@@ -48,13 +48,13 @@ def snapshot(function: Any) -> Any:
     if isinstance(function, Dispatcher) and library_name(function) is not None:
         return function
     found = identity(plain)
-    made = _SNAPSHOTS.get(found.text) if found.unknown is None else None
+    made = _SNAPSHOTS.get(found) if found.unknown is None else None
     if made is None:
         made = _Copies().compiled(plain, None)
         _IDENTITIES[made] = found
         if found.unknown is None:
             made._set_uuid(f"{plain.__qualname__}:{found.text}")
-            _SNAPSHOTS[found.text] = made
+            _SNAPSHOTS[found] = made
     return made
 
 
