@@ -99,7 +99,8 @@ class Compilations(event.Listener):
 with event.install_listener("numba:compile", Compilations()):
     import mine
     from animat.life.engine import run
-    own = eval(sys.argv[1], {**globals(), **vars(mine)})
+    from animat.numerics.snapshot import snapshot
+    own = snapshot(eval(sys.argv[1], {**globals(), **vars(mine)}))
     print(json.dumps({"result": run(float(sys.argv[2]), own), "compiled": names}))
 """
 
@@ -109,15 +110,17 @@ import json
 import mine, numpy
 from animat.life.engine import run
 from animat.numerics.compiled import announcing
+from animat.numerics.snapshot import snapshot
 
+own = snapshot(mine.own)
 done, told = [], []
 with announcing(lambda: told.append(list(done))):
     done.append("own")
-    mine.own(1.0)
+    own(1.0)
     done.append("run")
-    run(1.0, mine.own)
+    run(1.0, own)
     done.append("again")
-    run(numpy.float32(1.0), mine.own)
+    run(numpy.float32(1.0), own)
 print(json.dumps({"result": done, "compiled": told}))
 """
 
@@ -128,10 +131,14 @@ class Laboratory:
     def __init__(self, folder: Path):
         self.folder = folder
         self.package = folder / "animat"
-        numerics = Path(animat.__file__).parent / "numerics"
+        real = Path(animat.__file__).parent
         shutil.copytree(
-            numerics, self.package / "numerics", ignore=shutil.ignore_patterns("__pycache__")
+            real / "numerics",
+            self.package / "numerics",
+            ignore=shutil.ignore_patterns("__pycache__"),
         )
+        for module in ("settings.py", "mistakes.py"):
+            shutil.copy(real / module, self.package)
         (self.package / "life").mkdir()
         for package in (self.package, self.package / "life"):
             (package / "__init__.py").write_text("")
