@@ -27,7 +27,8 @@ PAIRED_NOTE = (
     "A pair is two lives with the same seed and index, which share their starting pose and random"
     " numbers. Difference: mean within pairs. Outlives in: share of pairs in which the life at the"
     " level named first is the longer; pairs that both go on at the cap are ties. Rank-biserial:"
-    " matched-pairs rank-biserial correlation, from -1 to 1, ties counting for neither. "
+    " matched-pairs rank-biserial correlation, from -1 to 1, ties counting for neither. p does not"
+    " use the pairs, so it can miss a difference that the intervals show. "
 )
 
 ROWS_AT_MOST = 40

@@ -69,7 +69,7 @@ def case_means(lives: Sample, chosen: Factor) -> tuple[NDArray[np.int64], NDArra
 
 
 def other_combinations(lives: Sample, *names: str) -> NDArray[np.int64]:
-    """The combination [n] of all factors but `names`, those that hold the very same lives as one."""
+    """The combination [n] of all other factors, those that hold the very same lives as one."""
     place = _combinations(lives.others(*names), len(lives.steps))
     content = codes_of(*(lives.factor(name).exact for name in names), lives.case)
     rows = np.unique(np.stack([place, content]), axis=1)

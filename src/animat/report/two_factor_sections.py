@@ -24,6 +24,8 @@ TWO_SCALES = (
     " tested."
 )
 
+TOO_FEW = " A dash: with as many contrasts as sets of lives, or more, there is no joint test."
+
 
 def interactions_in_short(found: Findings) -> list[str]:
     """A sentence on all interactions, if any was tested."""
@@ -69,9 +71,8 @@ def _overview(found: Findings) -> Section:
     ]
     pairs = len(found.margins) * (len(found.margins) - 1) // 2
     left_out = [
-        f"{pairs - len(rows)} of the {pairs} pairs of factors are not tested: no combination of"
-        " the other factors has two levels of the one with two levels of the other, or has as"
-        " many of their levels together as the rest of the study."
+        f"{pairs - len(rows)} of the {pairs} pairs of factors are not tested, as no combination of"
+        " the other factors has all their levels crossed."
     ]
     number = sum(len(_known(both)) for both in found.interactions_p)
     return Section(
@@ -86,9 +87,8 @@ def _overview(found: Findings) -> Section:
             TableBlock(
                 ("Factors", "Differences", "p", "p, Holm", "Ratios", "p", "p, Holm"),
                 first_and_last(rows, ROWS_AT_MOST),
-                f"p, Holm: corrected for the {_tests(number)} of this table. A dash: not more sets"
-                " of lives than contrasts, too few to test."
-                f"{_left_out(rows)}",
+                f"p, Holm: corrected for the {_tests(number)} of this table."
+                f"{TOO_FEW if number < 2 * len(rows) else ''}{_left_out(rows)}",
             )
         ],
     )

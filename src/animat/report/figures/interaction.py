@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter, NullLocator
+from numpy.typing import NDArray
 
 from animat.report.estimates import Estimate
 from animat.report.figures.style import (
@@ -83,9 +84,11 @@ def interaction_figure(
     if log:
         ax.set_xscale("log")
     if places is None or len(levels) <= TICKS_AT_MOST:
-        words = [shortened(level, 24) for level in levels]
-        crowded = len("   ".join(words)) > WIDTH
-        ax.set_xticks(at, words, rotation=30 if crowded else 0, ha="right" if crowded else "center")
+        words = [shortened(level) for level in levels]
+        turn = len("   ".join(words)) > WIDTH
+        if not turn:
+            words = _apart(words, np.log(at) if log else at)
+        ax.set_xticks(at, words, rotation=30 if turn else 0, ha="right" if turn else "center")
         ax.xaxis.set_minor_locator(NullLocator())
     else:
         ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -100,3 +103,16 @@ def interaction_figure(
     columns = legend_columns([line.label for line in lines])
     fig.legend(loc="outside lower center", ncols=columns, title=legend)
     return fig
+
+
+def _apart(words: Sequence[str], at: NDArray[np.float64]) -> list[str]:
+    """The words at their places [n], those left out that would run into the one before."""
+    kept, end = list(words), -np.inf
+    letter = max(float(np.ptp(at)), 1e-9) / WIDTH
+    for level in np.argsort(at, kind="stable"):
+        half = letter * (len(words[level]) + 1) / 2
+        if at[level] - half < end:
+            kept[level] = ""
+        else:
+            end = at[level] + half
+    return kept
