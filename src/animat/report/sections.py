@@ -21,6 +21,7 @@ from animat.report.findings import Findings
 from animat.report.levels import Level
 from animat.report.margins import Margin
 from animat.report.page import Picture, Section, TableBlock, interval, p_value
+from animat.report.two_factor_sections import interaction_sections, interactions_in_short
 
 NOBODY_DIED = (
     "No life ended before its cap, so lifespans tell nothing apart here, and are not compared."
@@ -50,6 +51,7 @@ def in_short(found: Findings) -> list[str]:
             _factor_in_short(margin, p)
             for margin, p in sorted(pairs, key=lambda pair: -longest_to_shortest(pair[0]))
         ]
+        told += interactions_in_short(found)
     return told
 
 
@@ -60,7 +62,8 @@ def result_sections(found: Findings) -> list[Section]:
         sections.append(cases_section(found))
     if len(found.margins) > 1:
         sections.append(factors_section(found))
-    return [*sections, *(margin_section(found, place) for place in range(len(found.margins)))]
+    sections += [margin_section(found, place) for place in range(len(found.margins))]
+    return [*sections, *interaction_sections(found)]
 
 
 def overall_section(found: Findings) -> Section:

@@ -14,6 +14,7 @@ from animat.report import survival
 from animat.report.estimates import Estimate, share
 from animat.report.figures import style
 from animat.report.figures.causes import causes_figure
+from animat.report.figures.interaction import InteractionLine, interaction_figure
 from animat.report.figures.learning import learning_figure
 from animat.report.figures.learning_curve import learning_curve_figure
 from animat.report.figures.life import life_figure
@@ -65,6 +66,23 @@ def drawings(trace, learning, ratios, world, robot, lives_table):
             },
             250.0,
         ),
+        "interaction": lambda: interaction_figure(
+            "mind.failure_effect",
+            ("0", "0.001", "1", "not set"),
+            (0.0, 0.001, 1.0, np.nan),
+            [
+                InteractionLine(f"{bar.agent}, {k}", dict.fromkeys(range(4), bar.mean))
+                for k, bar in enumerate(bars)
+            ],
+            "agent",
+        ),
+        "interaction_words": lambda: interaction_figure(
+            "world.layout",
+            ["a level with a name that is much longer than a page is wide"] * 5,
+            None,
+            [InteractionLine("BLIND", {k: bar.mean for k, bar in enumerate(bars)})],
+            "agent",
+        ),
         "trend": lambda: trend_figure(
             "mind.success_effect",
             rng.random(50),
@@ -82,7 +100,7 @@ def drawings(trace, learning, ratios, world, robot, lives_table):
 
 NAMES = (
     "worlds", "learning", "lifespans", "learning_curve", "survival", "survival_log",
-    "survival_levels", "margins", "trend", "causes",
+    "survival_levels", "margins", "interaction", "interaction_words", "trend", "causes",
     "life", "life_alone", "ratio",
 )  # fmt: skip
 
