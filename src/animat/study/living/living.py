@@ -33,7 +33,7 @@ EPISODES = 100
 CARRIED = (
     *("x", "y", "heading"),
     *("values", "drives", "drive_sum"),
-    *("estimates", "likelihoods", "weights"),
+    *("estimates", "weights"),
 )
 """What of a state must be finite. The memory of a wander controller is its own affair."""
 

@@ -1,0 +1,37 @@
+"""Numbers and labels in words, short, but never so short that two different ones look alike."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable
+
+
+def numerals(values: Iterable[float], digits: int = 6) -> dict[float, str]:
+    """Each number in words, with at most `digits` digits, or as many as tell all of them apart.
+
+    Whole numbers have all their digits. None of `values` may be NaN.
+    """
+    distinct = list(dict.fromkeys(values))
+    for enough in range(digits, 18):
+        said = {v: f"{v:.{enough}g}" if isinstance(v, float) else str(v) for v in distinct}
+        if len(set(said.values())) == len(distinct):
+            break
+    return said
+
+
+def shortened(labels: Iterable[str], most: int = 44) -> dict[str, str]:
+    """Each label cut to `most` characters: at its end, in its middle, or not at all.
+
+    It is cut so that no two look alike.
+    """
+    half = most // 2
+    cuts: tuple[Callable[[str], str], ...] = (
+        lambda label: label[: most - 1] + "…",
+        lambda label: label[: most - half - 1] + "…" + label[-half:],
+        lambda label: label,
+    )
+    said: dict[str, str] = {label: label for label in labels}
+    long = [label for label in said if len(label) > most]
+    for cut in cuts:
+        said |= {label: cut(label) for label in long}
+        often = Counter(said.values())
+        long = [label for label in long if often[said[label]] > 1]
+    return said
