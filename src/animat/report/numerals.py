@@ -5,15 +5,16 @@ from collections.abc import Callable, Iterable
 
 
 def numerals(values: Iterable[float], digits: int = 6) -> dict[float, str]:
-    """Each number in words, with at most `digits` digits, or as many as tell all of them apart.
+    """Each number in words, with at most `digits` digits, or as many as tell it from the others.
 
     Whole numbers have all their digits. None of `values` may be NaN.
     """
-    distinct = list(dict.fromkeys(values))
+    said = {value: str(value) for value in values}
+    alike = [value for value in said if isinstance(value, float)]
     for enough in range(digits, 18):
-        said = {v: f"{v:.{enough}g}" if isinstance(v, float) else str(v) for v in distinct}
-        if len(set(said.values())) == len(distinct):
-            break
+        said |= {value: f"{value:.{enough}g}" for value in alike}
+        often = Counter(said.values())
+        alike = [value for value in alike if often[said[value]] > 1]
     return said
 
 

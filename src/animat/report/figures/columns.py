@@ -98,15 +98,17 @@ def envelope(at: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.i
 
     In each column the first, the least, the greatest and the last; of a gap (NaN) its beginning.
     """
-    known = np.flatnonzero(~np.isnan(values))
-    where = at[known]
-    starts = np.flatnonzero(np.diff(where, prepend=where[:1] - 1))
-    ends = np.append(starts[1:], len(where))
-    order = np.lexsort((values[known], where))
     gaps = np.isnan(values)
     begun = np.flatnonzero(gaps & ~np.concatenate([[False], gaps[:-1]]))
-    chosen = [known[starts], known[order[starts]], known[order[ends - 1]], known[ends - 1]]
-    return np.unique(np.concatenate([*(chosen if len(known) else []), begun]))
+    known = np.flatnonzero(~gaps)
+    if not len(known):
+        return begun
+    where = at[known]
+    starts = np.flatnonzero(np.diff(where, prepend=where[0] - 1))
+    ends = np.append(starts[1:], len(where)) - 1
+    order = np.lexsort((values[known], where))
+    chosen = known[np.concatenate([starts, order[starts], order[ends], ends])]
+    return np.union1d(chosen, begun)
 
 
 def _joined(
