@@ -36,7 +36,7 @@ LONGEST = 1 << 50
 class Life:
     """A life that was lived: its setting, seed and index, its state at the end, and its trace.
 
-    `trace` is a table with a row for each recorded step (columns in docs/trace.md), or None.
+    `trace` is a table with a row for each recorded step (columns in docs/tables.md), or None.
     """
 
     setting: Setting
@@ -99,7 +99,7 @@ class Life:
             raise LifeError('this life was not recorded: live it with record="all"')
         from animat.life.drawing import draw_life
 
-        return draw_life(self)
+        return draw_life(self, self.trace)
 
 
 class Moment(NamedTuple):

@@ -30,9 +30,6 @@ STEPS = 300_000
 LEARNING_STEPS = 300_000
 """How long AF has learnt before it lives, as in Experiment 1."""
 
-FIGURE_ROWS = 300_000
-"""How many steps of a life a figure is drawn from at most; of a longer one, every n-th."""
-
 DRAWINGS = (".svg", ".png", ".pdf")
 
 
@@ -86,8 +83,12 @@ def live_one(asked: OneLife, tell: Telling) -> Life:
         with whole(asked.trace) as partial:
             _write_trace(moment.copy(), life.lifespan, partial)
     if asked.figure:
-        every = max(1, (life.lifespan - moment.step) // FIGURE_ROWS)
-        drawn = moment.live(steps, record=f"every:{every}").figure()
+        from animat.life.drawing import draw_life
+
+        mind, world = moment.setting.mind, moment.setting.world
+        rows = lived(moment.copy(), life.lifespan, TraceChoice())
+        parts = (table(part, mind, world) for part in rows)
+        drawn = draw_life(life, parts, (moment.step, life.lifespan))
         with whole(asked.figure) as partial:
             drawn.savefig(partial, format=asked.figure.suffix[1:].lower())
     return life

@@ -27,7 +27,9 @@ from animat.report.figures.worlds import worlds_figure
 from animat.report.survival import ALIVE, DeathCount
 
 SET_POINTS = {"nutrition": 0.9, "stamina": 0.2, "restlessness": 0.1}
-DRIVES = ("hunger", "fatigue", "curiosity")
+DRIVES = {"hunger": "nutrition", "fatigue": "stamina", "curiosity": "restlessness"}
+BEHAVIOURS = {"eat": "nutrition", "shelter": "stamina", "interact": "restlessness"}
+MIND = {"set_points": SET_POINTS, "drives": DRIVES, "behaviours": BEHAVIOURS}
 CELLS = [(world, agent) for world in ("abundant", "scarce") for agent in ("BLIND", "AF")]
 
 
@@ -90,10 +92,8 @@ def drawings(trace, learning, ratios, world, robot, lives_table):
             [(0.2, bars[0].mean), (0.7, bars[1].mean)],
         ),
         "causes": lambda: causes_figure({", ".join(cell): deaths for cell in CELLS}),
-        "life": lambda: life_figure(
-            trace(300), set_points=SET_POINTS, drives=DRIVES, world=worlds[0], title="A life"
-        ),
-        "life_alone": lambda: life_figure(trace(300), set_points=SET_POINTS, drives=DRIVES),
+        "life": lambda: life_figure(trace(300), **MIND, world=worlds[0], title="A life"),
+        "life_alone": lambda: life_figure(trace(300), **MIND),
         "ratio": lambda: ratio_figure(ratios(5), marks=[Mark("World 1", 8, 2.0)]),
     }
 
@@ -162,8 +162,8 @@ def hidden_ticks(fig):
 
 def test_no_figure_needs_pyplot():
     modules = (
-        "causes learning learning_curve life lifespans marginal margins ratio sobol specification"
-        " style survival trend verdicts worlds"
+        "causes columns learning learning_curve life lifespans marginal margins ratio sobol"
+        " specification style survival trend verdicts worlds"
     )
     code = "; ".join(f"import animat.report.figures.{name}" for name in modules.split())
     code += "; import sys; sys.exit('matplotlib.pyplot' in sys.modules)"
@@ -181,12 +181,12 @@ def test_the_users_own_settings_neither_show_nor_change(drawings, monkeypatch):
 
 def test_a_life_of_one_step_can_be_drawn(trace):
     row = trace(50).slice(0, 1)
-    style.png(life_figure(row, set_points=SET_POINTS, drives=DRIVES), dpi=50)
+    style.png(life_figure(row, **MIND), dpi=50)
 
 
 def test_a_long_life_does_not_make_a_heavy_picture(trace, world):
-    long = trace(30_000)
-    fig = life_figure(long, set_points=SET_POINTS, drives=DRIVES, world=world("World", 5))
+    long = trace(100_000)
+    fig = life_figure(long, **MIND, world=world("World", 5))
     assert len(style.svg(fig)) < 2_000_000
 
 
