@@ -6,11 +6,12 @@ import os
 import sys
 import traceback
 from io import TextIOWrapper
-from typing import NoReturn
+from typing import Annotated, NoReturn
 
 import typer
 
 from animat.cli.options import Debug
+from animat.version import __version__
 
 app = typer.Typer(
     name="animat",
@@ -25,8 +26,22 @@ app = typer.Typer(
 DONE, FAILED, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
+def _say_version(asked: bool) -> None:
+    if asked:
+        print(f"animat {__version__}")
+        raise typer.Exit
+
+
 @app.callback()
-def _animat(debug: Debug = False) -> None:
+def _animat(
+    debug: Debug = False,
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Say which version this is.", callback=_say_version, is_eager=True
+        ),
+    ] = False,
+) -> None:
     """Read the options that go before every command."""
 
 

@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
@@ -18,12 +19,15 @@ from animat.life.life import Progress, check
 from animat.life.setting import LifeError, Setting, bring_together
 from animat.life.slices import live_slice
 from animat.life.summary import summary
+from animat.life.table_files import to_pandas, write_csv
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
 from animat.robot.khepera import Khepera
 from animat.world.world import World
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from animat.report.estimates import Estimate
     from animat.report.survival import DeathCount
 
@@ -43,9 +47,20 @@ TURNS = 8
 
 @dataclass(frozen=True)
 class Lives:
-    """Lives of one setting and seed: `table` has a row for each (columns in docs/lives.md)."""
+    """Lives of one setting and seed: `table` has a row for each (columns in docs/tables.md)."""
 
     table: pa.Table
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the table as one of pandas; needs pandas (`pip install animat[pandas]`).
+
+        Raises SettingsError without it.
+        """
+        return to_pandas(self.table)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the table as a CSV file, replacing what was there. Raises SettingsError."""
+        write_csv(self.table, path)
 
     def mean_lifespan(self) -> Estimate:
         """Return the mean lifespan in steps, restricted at the cap, and its 95 % interval."""

@@ -19,9 +19,9 @@ from __future__ import annotations
 
 import hashlib
 import inspect
+import logging
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -32,7 +32,7 @@ import numpy as np
 from numba.core import utils
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
-from numba.core.event import Event, Listener, install_listener
+from numba.core.event import Event, Listener, register
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -134,24 +134,24 @@ def _taken(function: Callable[..., Any]) -> Iterator[tuple[str, Any]]:
                 yield f"{name}.{inner}", getattr(value, inner, None)
 
 
-class _Once(Listener):
-    """Call a function when the first kernel is compiled; what is not a kernel is small."""
+class _Announcement(Listener):
+    """Tell once in a process that a kernel is compiled, rather than read from disk.
 
-    def __init__(self, tell: Callable[[], None]) -> None:
-        self.tell: Callable[[], None] | None = tell
+    A warning of the logger "animat" is seen on the error output of a script, a notebook and the
+    command line, and `logging.getLogger("animat").setLevel("ERROR")` silences it.
+    """
+
+    told = False
 
     def on_start(self, event: Event) -> None:
-        compiled_now: Any = event.data
-        if self.tell and isinstance(compiled_now["dispatcher"]._cache, FunctionCache):
-            tell, self.tell = self.tell, None
-            tell()
+        dispatcher: Any = event.data["dispatcher"]  # pyright: ignore[reportOptionalSubscript]
+        ours = dispatcher.py_func.__module__.startswith("animat.")
+        if not self.told and ours and isinstance(dispatcher._cache, FunctionCache):
+            self.told = True
+            logging.getLogger("animat").warning("compiling the simulator, once, some 20 s ...")
 
     def on_end(self, event: Event) -> None:
         pass
 
 
-@contextmanager
-def announcing(tell: Callable[[], None]) -> Iterator[None]:
-    """Call `tell` once if a kernel is compiled meanwhile, rather than read from disk."""
-    with install_listener("numba:compile", _Once(tell)):
-        yield
+register("numba:compile", _Announcement())

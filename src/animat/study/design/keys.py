@@ -21,7 +21,7 @@ from animat.mistakes import allowed_types, inside, is_model, nearest, plain, wri
 Key = tuple[str, ...]
 
 CHANGED: dict[Key, dict[str, Any]] = {
-    ("mind", "variables"): dict.fromkeys(PHYSIOLOGIES["excess"], {}),
+    ("mind", "variables"): {n: {} for n in PHYSIOLOGIES["excess"]},
     ("mind", "drives"): {n: each.model_dump(mode="json") for n, each in PAPER_DRIVES.items()},
     ("mind", "behaviours"): {
         n: each.model_dump(mode="json", exclude_none=True) for n, each in PAPER_BEHAVIOURS.items()
@@ -127,7 +127,9 @@ def _default(table: Any, part: str, key: Key) -> dict[str, Any]:
     if not is_model(table):
         return CHANGED.get(key, {}).get(part, {})
     default = table.model_fields[part].default
-    return CHANGED.get((*key, part), default) if isinstance(default, dict) else {}
+    if not default or not isinstance(default, dict):
+        return {}
+    return CHANGED.get((*key, part), default)
 
 
 def _keys(annotation: Any, node: Any, key: Key) -> Iterator[Key]:
