@@ -2,7 +2,10 @@
 
 STANDING = """
 name = "mine"
-objects = [{ type = "TS", x = 300.0, y = 300.0, angle = 90.0 }, { type = "CL", x = 700.0, y = 700.0 }]
+objects = [
+    { type = "TS", x = 300.0, y = 300.0, angle = 90.0 },
+    { type = "CL", x = 700.0, y = 700.0 },
+]
 """
 
 

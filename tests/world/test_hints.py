@@ -32,7 +32,8 @@ def test_an_angle_of_more_than_a_turn_is_taken_for_degrees():
     one = kind("a")
     (hint,) = of_file([{"type": "a", "x": 1.0, "y": 2.0, "angle": 45.0}], (one,))
     assert hint == (
-        "object 0 (a at 1, 2): angle = 45 rad is more than a turn; if it is in degrees, write 0.7854"
+        "object 0 (a at 1, 2): angle = 45 rad is more than a turn; if it is in degrees,"
+        " write 0.7854"
     )
     assert not of_file([{"type": "a", "x": 1.0, "y": 2.0, "angle": -2 * math.pi}], (one,))
     many = of_file(
