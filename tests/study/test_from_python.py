@@ -89,6 +89,12 @@ def test_what_is_no_study_is_refused_in_a_line(study, told, tmp_path):
     assert not (tmp_path / "results").exists()
 
 
+def test_what_it_cannot_be_run_with_is_refused_at_once(tmp_path):
+    with pytest.raises(SettingsError) as caught:
+        animat.run(STUDY, 3, threads=0, progress="no")  # pyright: ignore[reportArgumentType]
+    assert [line.split()[0] for line in caught.value.problems] == ["out", "threads", "progress"]
+
+
 def test_an_object_in_a_dict_stands_for_its_settings():
     by_object = {"name": "x", "mind": animat.Mind(agent="RANDOM")}
     assert _study(by_object) == study_of({"name": "x", "mind": {"agent": "RANDOM"}}, "x")

@@ -17,12 +17,12 @@ import numpy as np
 import pyarrow as pa
 from pydantic import BaseModel
 
-from animat.mistakes import written
+from animat.mistakes import plain, written
 from animat.progress import Telling, telling
 from animat.settings import SettingsError
 from animat.study.design.shipped import study_file
 from animat.study.design.study import Study, read_study, study_of
-from animat.study.living.plan import Plan, plan_of
+from animat.study.living.plan import plan_of
 from animat.study.running.livable import check_livable
 from animat.study.running.run import run as live
 from animat.study.running.run import threads as workers_of
@@ -95,6 +95,7 @@ def run(
         RunError: the directory is held by another process, or cannot be written any more.
         KeyboardInterrupt: it was interrupted; what is finished is in the directory.
     """
+    _check(out, threads, progress)
     plan = plan_of(_study(study).to_toml())
     directory = Path("results") / plan.study.name if out is None else Path(out)
     with _told(progress) as tell, workers_of(threads) as workers:
@@ -104,9 +105,24 @@ def run(
     lives = outcome.tally.counts["lives"]
     if not outcome.complete:
         raise KeyboardInterrupt(
-            f"{lives.rows:,} of {_total(plan):,} lives are in {directory}; the same call resumes"
+            f"{lives.rows:,} of {plan.numbering['lives'].total:,} lives are in {directory};"
+            " the same call resumes"
         )
     return StudyRun(Results(directory), lives.failed)
+
+
+def _check(out: Any, threads: Any, progress: Any) -> None:
+    problems = []
+    if not isinstance(out, str | Path | None):
+        problems.append(f"out is of type {type(out).__name__}; allowed is the path of a directory")
+    if threads is not None and not (isinstance(threads, int | np.integer) and threads >= 1):
+        problems.append(f"threads = {plain(threads)}; allowed are whole numbers from 1")
+    if not (isinstance(progress, bool) or callable(progress)):
+        problems.append(
+            f"progress = {plain(progress)}; allowed are True, False and a function of three"
+        )
+    if problems:
+        raise SettingsError(*problems)
 
 
 def _study(study: Any) -> Study:
@@ -153,16 +169,12 @@ def _told(progress: Progress | bool) -> Iterator[Telling]:
         with telling() as tell:
             yield tell
     elif callable(progress):
-        done: dict[str, int] = {}
+        so_far: dict[str, int] = {}
 
-        def pass_on(task: str, more: int, total: int, note: str = "") -> None:
-            done[task] = done.get(task, 0) + more
-            progress(task, done[task], total)
+        def pass_on(task: str, done: int, total: int, note: str = "") -> None:
+            so_far[task] = so_far.get(task, 0) + done
+            progress(task, so_far[task], total)
 
         yield pass_on
     else:
         yield lambda *_, **__: None
-
-
-def _total(plan: Plan) -> int:
-    return plan.numbering["lives"].total

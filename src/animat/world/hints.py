@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animat.world.files import WorldFile
-from animat.world.layout import START_FROM_EDGE, START_ROOM, site_name
+from animat.world.layout import START_FROM_EDGE, START_ROOM, Placement, site_name
 from animat.world.raster import FREE, Raster
 from animat.world.world import World
 
@@ -65,7 +65,8 @@ def hints_of_world(world: World, raster: Raster) -> Iterator[str]:
     """Yield what a robot cannot reach in a world, by its raster of at least `IN_REACH` mm."""
     from scipy.ndimage import label
 
-    parts, _ = label(raster.clearance >= START_ROOM)
+    parts = np.zeros(raster.clearance.shape, np.int32)
+    label(raster.clearance >= START_ROOM, output=parts)
     startable = _startable(world, raster)
     from_starts = [part for part in np.unique(parts[startable]) if part > 0]
     if len(from_starts) > 1:
@@ -104,7 +105,7 @@ def _startable(world: World, raster: Raster) -> NDArray[np.bool_]:
     return (raster.clearance >= START_ROOM) & along[:, np.newaxis] & across
 
 
-def _first(found: list) -> Iterator[tuple[str, object]]:
+def _first(found: list[tuple[str, Placement]]) -> Iterator[tuple[str, Placement]]:
     """Yield the first of many."""
     yield from found[:MOST_TOLD]
     if len(found) > MOST_TOLD:
