@@ -1,5 +1,6 @@
 """One life from the command line: what is told and written is the life itself."""
 
+import re
 from pathlib import Path
 
 import pyarrow.parquet as pq

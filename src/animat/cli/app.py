@@ -7,11 +7,12 @@ import sys
 import threading
 import traceback
 from io import TextIOWrapper
-from typing import NoReturn
+from typing import Annotated, NoReturn
 
 import typer
 
 from animat.cli.options import Debug
+from animat.version import __version__
 
 app = typer.Typer(
     name="animat",
@@ -29,8 +30,22 @@ KERNEL_THREAD = "animat"
 DONE, FAILED, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
+def _say_version(asked: bool) -> None:
+    if asked:
+        print(f"animat {__version__}")
+        raise typer.Exit
+
+
 @app.callback()
-def _animat(debug: Debug = False) -> None:
+def _animat(
+    debug: Debug = False,
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Say which version this is.", callback=_say_version, is_eager=True
+        ),
+    ] = False,
+) -> None:
     """Read the options that go before every command."""
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from animat.cli.app import app
-from animat.cli.options import Debug, Set, StudyFile, compiling_told
+from animat.cli.options import Debug, Set, StudyFile
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -42,10 +42,9 @@ def check(study: StudyFile, changes: Set = None, debug: Debug = False) -> None:
     path = study_file(study)
     asked = read_study(path, changes or ())
     left_out = excluded(asked)
-    with compiling_told():
-        plan = Plan(asked)
-        check_livable(plan)
-        expected = expect(plan)
+    plan = Plan(asked)
+    check_livable(plan)
+    expected = expect(plan)
     cases = "1 case" if len(plan.cases) == 1 else f"{len(plan.cases):,} cases"
     print(f"{asked.name} ({path}): {cases}, {asked.lives:,} lives each")
     if any(case.factors for case in plan.cases):

@@ -13,6 +13,7 @@ from animat.mind.mind import Drive
 from animat.report.figures.life import life_figure
 from animat.report.figures.worlds import RobotDrawing, WorldDrawing
 from animat.robot.khepera import REACH, Khepera
+from animat.world.files import WorldFile
 from animat.world.world import World
 
 if TYPE_CHECKING:
@@ -36,6 +37,24 @@ def world_drawing(
         polygons=world.polygons()[: world.n_objects],
         types=[one.type for one in world.layout.placements],
         pose=pose,
+    )
+
+
+def file_drawing(file: WorldFile) -> WorldDrawing:
+    """Return a world as its file has it, also where its objects cannot stand so."""
+    kinds = {kind.name: kind.polygon() for kind in file.types}
+    polygons = []
+    for one in file.objects:
+        sine, cosine = math.sin(one.angle), math.cos(one.angle)
+        turned = kinds[one.type] @ np.array([[cosine, sine], [-sine, cosine]])
+        polygons.append(turned + np.array([one.x, one.y]))
+    return WorldDrawing(
+        title=file.name,
+        width=file.arena.width,
+        height=file.arena.height,
+        free=file.arena.free,
+        polygons=polygons,
+        types=[one.type for one in file.objects],
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from animat.life.failure import FailedLifeError
 from animat.life.setting import LifeError, Setting, bring_together
 from animat.life.slices import live_recorded
 from animat.life.summary import death_of, summary
+from animat.life.table_files import to_pandas, write_csv
 from animat.life.trace import row_dtype, table
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
@@ -24,6 +26,7 @@ from animat.robot.khepera import Khepera
 from animat.world.world import World
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.figure import Figure
 
 SLICE = 100_000
@@ -90,13 +93,31 @@ class Life:
             np.array(self.state.weights),
         )
 
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the trace as a pandas table; needs pandas (`pip install animat[pandas]`).
+
+        Raises LifeError if the life was not recorded, SettingsError without pandas.
+        """
+        return to_pandas(self._recorded())
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the trace as a CSV file, replacing what was there.
+
+        Raises LifeError if the life was not recorded, SettingsError for what cannot be written.
+        """
+        write_csv(self._recorded(), path)
+
+    def _recorded(self) -> pa.Table:
+        if self.trace is None:
+            raise LifeError('this life was not recorded: live it with record="all"')
+        return self.trace
+
     def figure(self) -> Figure:
         """Draw the trace: variables, drives, behaviours, rewards and the path.
 
         Raises LifeError if the life was not recorded.
         """
-        if self.trace is None:
-            raise LifeError('this life was not recorded: live it with record="all"')
+        self._recorded()
         from animat.life.drawing import draw_life
 
         return draw_life(self, self.trace)

@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
+from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,7 @@ from animat.life.batch import Batch, Progress
 from animat.life.life import check
 from animat.life.setting import LifeError, Setting, bring_together
 from animat.life.summary import NAMES, summary, without_failed
+from animat.life.table_files import to_pandas, write_csv
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
 from animat.numerics.threads import KernelThreads
@@ -27,6 +29,8 @@ from animat.robot.khepera import Khepera
 from animat.world.world import World
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from animat.report.estimates import Estimate
     from animat.report.survival import DeathCount
 
@@ -54,6 +58,17 @@ class Lives:
     def failed(self) -> int:
         """How many of them failed."""
         return self.table.num_rows - self.table["error"].null_count
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the table as one of pandas; needs pandas (`pip install animat[pandas]`).
+
+        Raises SettingsError without it.
+        """
+        return to_pandas(self.table)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the table as a CSV file, replacing what was there. Raises SettingsError."""
+        write_csv(self.table, path)
 
     def mean_lifespan(self) -> Estimate:
         """Return the mean lifespan in steps, restricted at the cap, and its 95 % interval.

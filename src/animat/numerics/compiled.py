@@ -18,10 +18,10 @@ its kernel: to hand a world's arrays from function to function by value costs mo
 from __future__ import annotations
 
 import hashlib
+import logging
 import os
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
@@ -29,7 +29,7 @@ from typing import Any, TypeVar
 import numba
 from numba.core import config, utils
 from numba.core.caching import FunctionCache
-from numba.core.event import Event, Listener, install_listener
+from numba.core.event import Event, Listener, register
 
 from animat.numerics.identity import STEP_OPTIONS
 from animat.numerics.inlined import inlined
@@ -104,24 +104,24 @@ def _identified(dispatcher: Any, function: Callable[..., Any]) -> Any:
     return dispatcher
 
 
-class _Once(Listener):
-    """Call a function when the first kernel is compiled; what is not a kernel is small."""
+class _Announcement(Listener):
+    """Tell once in a process that a kernel is compiled, rather than read from disk.
 
-    def __init__(self, tell: Callable[[], None]) -> None:
-        self.tell: Callable[[], None] | None = tell
+    A warning of the logger "animat" is seen on the error output of a script, a notebook and the
+    command line, and `logging.getLogger("animat").setLevel("ERROR")` silences it.
+    """
+
+    told = False
 
     def on_start(self, event: Event) -> None:
-        compiled_now: Any = event.data
-        if self.tell and isinstance(compiled_now["dispatcher"]._cache, FunctionCache):
-            tell, self.tell = self.tell, None
-            tell()
+        dispatcher: Any = event.data["dispatcher"]  # pyright: ignore[reportOptionalSubscript]
+        ours = dispatcher.py_func.__module__.startswith("animat.")
+        if not self.told and ours and isinstance(dispatcher._cache, FunctionCache):
+            self.told = True
+            logging.getLogger("animat").warning("compiling the simulator, once, some 20 s ...")
 
     def on_end(self, event: Event) -> None:
         pass
 
 
-@contextmanager
-def announcing(tell: Callable[[], None]) -> Iterator[None]:
-    """Call `tell` once if a kernel is compiled meanwhile, rather than read from disk."""
-    with install_listener("numba:compile", _Once(tell)):
-        yield
+register("numba:compile", _Announcement())

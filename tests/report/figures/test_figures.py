@@ -20,6 +20,7 @@ from animat.report.figures.learning_curve import learning_curve_figure
 from animat.report.figures.life import life_figure
 from animat.report.figures.lifespans import Bar, Panel, lifespans_figure
 from animat.report.figures.margins import margins_figure
+from animat.report.figures.networks import SURFACE, networks_figure
 from animat.report.figures.ratio import Mark, ratio_figure
 from animat.report.figures.survival import level_curves_figure, survival_figure
 from animat.report.figures.trend import trend_figure
@@ -95,13 +96,27 @@ def drawings(trace, learning, ratios, world, robot, lives_table):
         "life": lambda: life_figure(trace(300), **MIND, world=worlds[0], title="A life"),
         "life_alone": lambda: life_figure(trace(300), **MIND),
         "ratio": lambda: ratio_figure(ratios(5), marks=[Mark("World 1", 8, 2.0)]),
+        "networks": lambda: networks_figure(
+            ("eat", "shelter", "interact"),
+            ("shape", "size"),
+            [(rng.normal(size=(2, 3)), rng.normal(size=3)) for _ in range(3)],
+            rng.random((3, len(SURFACE), len(SURFACE))),
+            {"TS": (np.zeros(2), [0.1, 0.5, 1.0]), "CL": (np.ones(2), [0.1, 0.5, 1.0])},
+        ),
+        "networks_of_many": lambda: networks_figure(
+            ("eat", "shelter"),
+            ("shape", "size", "colour"),
+            [(rng.normal(size=(4, 4)), rng.normal(size=5)) for _ in range(2)],
+            None,
+            {name: (np.zeros(3), [0.1, 0.5]) for name in ("TS", "TL", "CS", "CL")},
+        ),
     }
 
 
 NAMES = (
     "worlds", "learning", "lifespans", "learning_curve", "survival", "survival_log",
     "survival_levels", "margins", "interaction", "interaction_words", "trend", "causes",
-    "life", "life_alone", "ratio",
+    "life", "life_alone", "ratio", "networks", "networks_of_many",
 )  # fmt: skip
 
 
