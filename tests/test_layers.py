@@ -20,12 +20,15 @@ import animat
 
 ROOT = Path(animat.__file__).parent
 
-GROUND = {"settings", "mistakes", "files"}
+GROUND = {"settings", "mistakes", "files", "errors", "arguments", "names"}
 """Modules that every layer may know."""
 
 KNOWS: dict[str, set[str]] = {
     "mistakes": set(),
-    "settings": {"mistakes"},
+    "errors": {"mistakes"},
+    "arguments": {"mistakes", "errors"},
+    "names": {"mistakes"},
+    "settings": {"mistakes", "errors", "arguments"},
     "files": {"mistakes", "settings"},
     "progress": set(),
     "numerics": GROUND,

@@ -14,6 +14,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from animat.arguments import MOST_63, callback, instance, sequence, whole
 from animat.life.life import Progress, check
 from animat.life.setting import LifeError, Setting, bring_together
 from animat.life.slices import live_slice
@@ -36,6 +37,8 @@ STEPS_OF_A_CHUNK = 2_000_000
 SLICE = 10_000
 """Steps of each life of a chunk between two looks at the outside."""
 
+
+MOST_THREADS = 4_096
 
 TURNS = 8
 """How many times a thread takes a chunk at least, of lives enough."""
@@ -79,10 +82,14 @@ def live_many(
     of equal seed and index start in the same pose and meet the same luck, whatever their mind.
     Raises LifeError for what cannot be lived.
     """
+    callback("progress", progress, LifeError)
     if networks is not None:
+        networks = sequence("networks", networks, Networks, LifeError)
         if not networks:
             raise LifeError("networks is empty; give at least one")
-        mind = Mind(**{**dict(mind), "networks": networks[0]})
+        if any(one.weights.shape != networks[0].weights.shape for one in networks):
+            raise LifeError("networks differ in their form; all lives have the same")
+        mind = Mind(**{**dict(instance("mind", mind, Mind)), "networks": networks[0]})
     setting = bring_together(mind, world, robot)
     weights = None if networks is None else np.array([one.weights for one in networks])
     chunks = live_chunks(setting, seed, first, lives, steps, weights, threads, progress)
@@ -103,10 +110,12 @@ def live_chunks(
 
     Only as many chunks as there are threads are held at a time.
     """
-    check(seed, first, steps)
-    if lives < 1:
-        raise LifeError(f"lives = {lives}; allowed are whole numbers from 1")
-    threads = threads or os.cpu_count() or 1
+    seed, _, steps = check(seed, 0, steps)
+    first = whole("first", first, 0, MOST_63, LifeError)
+    lives = whole("lives", lives, 1, MOST_63 + 1 - first, LifeError)
+    if threads is None:
+        threads = os.cpu_count() or 1
+    threads = whole("threads", threads, 1, MOST_THREADS, LifeError)
     stop = Event()
 
     size = chunk_size(steps, lives, threads)

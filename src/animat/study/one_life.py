@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import pyarrow.parquet as pq
 
+from animat import arguments
+from animat.arguments import callback
 from animat.files import check_writable, whole
 from animat.life.life import Life, Moment, Progress, TraceChoice, birth, check, live, lived
 from animat.life.recording import EVERY, Recording, write_recording
@@ -108,10 +110,12 @@ def record(
     Every `every` steps the whole state is kept. A file that was there is replaced, when the new
     one is whole. Raises SettingsError for what cannot be lived, recorded or written.
     """
-    check(seed, life, steps)
+    seed, life, steps = check(seed, life, steps)
+    callback("progress", progress, LifeError)
     moment = birth(bring_together(mind, world, robot), seed, life)
+    file = arguments.path("path", path)
     return write_recording(
-        Path(path), moment, steps=steps, every=every, made=provenance(), progress=progress
+        file, moment, steps=steps, every=every, made=provenance(), progress=progress
     )
 
 

@@ -15,6 +15,7 @@ from pydantic import BaseModel
 
 from animat.mind.physiology import PHYSIOLOGIES
 from animat.mistakes import allowed_types, inside, is_model, nearest, plain, written
+from animat.settings import SettingsError
 
 Key = tuple[str, ...]
 
@@ -24,7 +25,7 @@ VARIABLES: Key = ("mind", "variables")
 _PART = r"""[A-Za-z0-9_-]+|"[^"\\\x00-\x1f]*"|'[^'\x00-\x1f]*'"""
 
 
-class UnknownKeyError(ValueError):
+class UnknownKeyError(SettingsError):
     """A key that no setting has."""
 
 

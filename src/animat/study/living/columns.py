@@ -19,6 +19,7 @@ from animat.life.likelihoods import likelihoods
 from animat.life.setting import Setting
 from animat.life.summary import summary
 from animat.mind.mind import Mind
+from animat.names import LIKELIHOOD, spelled
 from animat.study.living.identity import networks_matter
 from animat.study.living.numbering import Kind
 from animat.study.living.plan import Plan, world_of
@@ -134,11 +135,10 @@ def _schema_of(plan: Plan, kind: Kind, place: int) -> pa.Schema:
 
 def _likelihood_columns(setting: Setting, states: NDArray[np.void]) -> dict[str, pa.Array]:
     said = likelihoods(setting, states)
-    return {
-        f"likelihood_{behaviour}_{kind.name}": pa.array(said[:, b, t])
-        for b, behaviour in enumerate(setting.mind.behaviours)
-        for t, kind in enumerate(setting.world.types)
-    }
+    types = [kind.name for kind in setting.world.types]
+    flat = said.reshape(len(said), math.prod(said.shape[1:]))
+    names = spelled((LIKELIHOOD,), behaviour=setting.mind.behaviours, object=types)
+    return dict(zip(names, map(pa.array, flat.T), strict=True))
 
 
 def _weights(states: NDArray[np.void]) -> pa.Array:

@@ -17,6 +17,7 @@ from threading import Event
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.errors import Error
 from animat.life.likelihoods import likelihoods
 from animat.life.lives import live_on
 from animat.life.setting import Setting
@@ -41,7 +42,7 @@ Snapshot = tuple[NDArray[np.void], NDArray[np.uint8]]
 """States [L] of lives and the objects [L, S] present in them, at one time."""
 
 
-class StoppedError(Exception):
+class StoppedError(Error):
     """Lives were stopped before their end."""
 
 

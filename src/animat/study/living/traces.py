@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from animat.life.life import Moment, TraceChoice, lived
 from animat.life.lives import live_on
 from animat.life.trace import row_dtype, table
+from animat.names import WHICH
 from animat.study.living.living import Company, Snapshot, Watched
 
 
@@ -38,7 +39,7 @@ class Traced:
         """Return the columns of these traces: `case`, `life`, and those of docs/tables.md."""
         setting = self.company.setting
         none = table(np.zeros(0, row_dtype(self.watched.states.dtype)), setting.mind, setting.world)
-        names = [pa.field("case", pa.int64()), pa.field("life", pa.int64())]
+        names = [pa.field(name, pa.int64()) for name in WHICH]
         return pa.schema([*names, *none.schema])
 
     def tables(self, choice: TraceChoice, wanted: pa.Schema) -> Iterator[pa.Table]:
