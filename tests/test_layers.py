@@ -20,13 +20,16 @@ import animat
 
 ROOT = Path(animat.__file__).parent
 
-GROUND = {"settings", "mistakes", "files", "version"}
+GROUND = {"settings", "mistakes", "files", "version", "errors", "arguments", "names"}
 """Modules that every layer may know."""
 
 KNOWS: dict[str, set[str]] = {
     "version": set(),
     "mistakes": set(),
-    "settings": {"mistakes"},
+    "errors": {"mistakes"},
+    "arguments": {"mistakes", "errors"},
+    "names": {"mistakes"},
+    "settings": {"mistakes", "errors", "arguments"},
     "files": {"mistakes", "settings"},
     "progress": set(),
     "numerics": GROUND,

@@ -122,11 +122,16 @@ def test_the_step_of_a_death_is_the_last_row_of_every_recording(small, caring_fo
 
 @pytest.mark.parametrize("record", ["all", "every:50", "last:7"])
 def test_the_row_of_a_death_by_an_act_holds_the_values_that_killed(record, small):
-    mind = Mind(behaviours={
-        "eat": {"serves": "hunger", "needs": "grasp", "success": {"stamina": -0.9}, "failure": {"stamina": -0.9}},
-        "shelter": {"serves": "fatigue", "needs": "shelter", "failure": {"nutrition": -0.9}, "success": {"nutrition": -0.9}},
-        "interact": {"serves": "curiosity", "needs": "interact", "failure": {"restlessness": -0.9}},
-    }, overflow="lethal", failed_act="lethal")  # fmt: skip
+    harm = {
+        "eat": {"success": {"stamina": -0.9}, "failure": {"stamina": -0.9}},
+        "shelter": {"success": {"nutrition": -0.9}, "failure": {"nutrition": -0.9}},
+        "interact": {"failure": {"restlessness": -0.9}},
+    }
+    mind = Mind(
+        behaviours={name: {**dict(Mind().behaviours[name]), **harm[name]} for name in harm},
+        overflow="lethal",
+        failed_act="lethal",
+    )
     life = live(mind, small, seed=1, record=record)
     assert not life.death.endswith("metabolism")
     last = life.trace.to_pylist()[-1]

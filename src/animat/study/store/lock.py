@@ -18,6 +18,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
 
+from animat.errors import Error
+
 PATIENCE = 1.0
 """Seconds to wait for one who only looks, as `holder` does for a moment."""
 
@@ -39,7 +41,7 @@ class Holder(NamedTuple):
         return f"process {self.pid} on {self.host}, since {self.since}"
 
 
-class RunError(RuntimeError):
+class RunError(Error):
     """Something that stops a run and is no mistake of its user; `str` says in a line what."""
 
 

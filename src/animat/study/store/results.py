@@ -8,8 +8,7 @@ A row is a life of a case. Cases whose lives are the same lives were lived once;
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
@@ -20,9 +19,13 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.dataset as ds
 import pyarrow.parquet as pq
+from pydantic import ValidationError
 
+from animat import arguments
+from animat.arguments import MOST_63, instance, sequence, whole
 from animat.life.table_files import to_pandas
-from animat.settings import SettingsError, nearest, validated
+from animat.mistakes import brief
+from animat.settings import SettingsError, explain, nearest, parse_text, validated
 from animat.study.design.study import Study
 from animat.study.living.numbering import KINDS, Kind, Numbering, Part
 from animat.study.living.seal import Seal, seal_of
@@ -49,7 +52,7 @@ def open(directory: Path | str) -> Results:  # noqa: A001
 
     Raises SettingsError where there are none.
     """
-    return Results(Path(directory))
+    return Results(arguments.path("directory", directory))
 
 
 class Results:
@@ -68,7 +71,11 @@ class Results:
     @cached_property
     def study(self) -> Study:
         """The study, every setting written out. Raises SettingsError for one that has changed."""
-        return validated(tomllib.loads(self.text), Study)
+        where = str(self.directory)
+        try:
+            return validated(parse_text(self.text, where), Study)
+        except ValidationError as error:
+            raise explain(error, Study, where) from None
 
     @cached_property
     def text(self) -> str:
@@ -112,7 +119,7 @@ class Results:
 
         Its lives stand under the case they were lived for, without factors.
         """
-        columns = read_columns(self.directory, kind)
+        columns = read_columns(self.directory, _known(kind))
         files = [str(self.directory / part.file) for part in self._finished(kind)]
         return ds.dataset(files, schema=columns, format="parquet")
 
@@ -125,6 +132,8 @@ class Results:
         `pc.field("lifespan") > 1000`. Raises SettingsError for a column there is not.
         """
         wanted = self._checked(columns)
+        if where is not None:
+            instance("where", where, pc.Expression)
         needed = None if where is not None else {*wanted, "case", "life"}
         batches = [
             batch if where is None else batch.filter(where) for batch in self.batches(needed)
@@ -138,6 +147,9 @@ class Results:
         They come in the order in which they are numbered. `columns` must have `case`.
         """
         dataset = self.dataset()
+        if columns is not None:
+            instance("columns", columns, Set)
+            self._checked(sorted(columns))
         stored = [n for n in dataset.schema.names if columns is None or n in columns]
         factors = [n for n in self.factors if columns is None or n in columns]
         yield self._with_factors(dataset.schema.empty_table().select(stored), factors)
@@ -163,7 +175,7 @@ class Results:
 
     def curves(self, kind: Kind = "lives") -> pa.Table:
         """Return the learning curves of lives, or of the robots that teach; empty without any."""
-        return self._beside("curves", kind, kind)
+        return self._beside("curves", _known(kind), kind)
 
     def traces(self) -> pa.Table:
         """Return the traces of the lives that were recorded; empty without any."""
@@ -171,6 +183,7 @@ class Results:
 
     def failures(self, count: int) -> list[str]:
         """Return the first of the lives that failed, in words, at most `count` of them."""
+        count = whole("count", count, 0, MOST_63)
         with _whole(self.directory):
             failed = self.dataset().head(count, filter=pc.field("error").is_valid())
         told = []
@@ -207,7 +220,7 @@ class Results:
     def _checked(self, columns: Sequence[str] | None) -> list[str]:
         known = ["case", *self.factors]
         known += [name for name in self.dataset().schema.names if name != "case"]
-        for name in columns or ():
+        for name in sequence("columns", columns or (), str):
             if name not in known:
                 raise SettingsError(f'lives have no column "{name}"{nearest(name, known)}')
         return known if columns is None else list(columns)
@@ -238,6 +251,12 @@ class Results:
             columns[name] = coded.take(pa.array(cases))
         rest = {name: lives[name] for name in lives.column_names if name != "case"}
         return pa.table({**columns, **rest})
+
+
+def _known(kind: Kind) -> Kind:
+    if kind not in KINDS:
+        raise SettingsError(f"kind = {brief(kind)}; allowed are {', '.join(KINDS)}")
+    return kind
 
 
 @contextmanager
