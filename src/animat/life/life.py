@@ -38,7 +38,7 @@ Progress = Callable[[int], None]
 class Life:
     """A life that was lived: its setting, seed and index, its state at the end, and its trace.
 
-    `trace` is a table with a row for each recorded step (columns in docs/trace.md), or None.
+    `trace` is a table with a row for each recorded step (columns in docs/tables.md), or None.
     """
 
     setting: Setting

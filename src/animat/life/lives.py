@@ -43,7 +43,7 @@ TURNS = 8
 
 @dataclass(frozen=True)
 class Lives:
-    """Lives of one setting and seed: `table` has a row for each (columns in docs/lives.md)."""
+    """Lives of one setting and seed: `table` has a row for each (columns in docs/tables.md)."""
 
     table: pa.Table
 

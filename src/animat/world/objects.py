@@ -7,7 +7,14 @@ from typing import Annotated, Any, Self
 
 from numpy import float64
 from numpy.typing import NDArray
-from pydantic import Field, PlainValidator, WithJsonSchema, field_validator, model_validator
+from pydantic import (
+    Field,
+    PlainSerializer,
+    PlainValidator,
+    WithJsonSchema,
+    field_validator,
+    model_validator,
+)
 
 from animat.settings import Settings, nearest
 from animat.world.shapes import FEWEST_SIDES, MOST_SIDES, SIDES, polygon
@@ -55,7 +62,10 @@ class ObjectType(Settings):
 
     name: str
     shape: Annotated[
-        str | int | Corners, PlainValidator(_known_shape), WithJsonSchema(_SHAPE_SCHEMA)
+        str | int | Corners,
+        PlainValidator(_known_shape),
+        PlainSerializer(lambda shape: shape, return_type=Any),
+        WithJsonSchema(_SHAPE_SCHEMA),
     ]
     size_mm: Annotated[float, Field(gt=0)] | None = None
     features: Annotated[dict[str, float], Field(min_length=1)]

@@ -148,7 +148,7 @@ class World:
         Drawn once for a content, a horizon and a resolution, then kept and shared: read only.
 
         Raises:
-            ValueError: an impossible horizon, or too many cells.
+            SettingsError: an impossible horizon, or too many cells.
         """
         return _raster(self, float(horizon))
 
