@@ -156,7 +156,5 @@ def test_a_file_that_cannot_be_read_to_its_end_is_told_of(finished, tmp_path):
     results = Results(directory)
     assert results.progress == (16, 16)
     for read in (results.lives, results.teachers, results.traces, results.curves):
-        with pytest.raises(
-            SettingsError, match=r"-000000\.parquet: has changed since it was written"
-        ):
+        with pytest.raises(SettingsError, match=r"-000000\.parquet: has changed since it was"):
             read()
