@@ -105,7 +105,8 @@ def read_cases(directory: Path) -> pa.Table:
     try:
         with opened(path, "table") as file:
             cases = pq.read_table(file)
-    except (OSError, SettingsError, pa.ArrowException):
+        cases.validate(full=True)
+    except (OSError, ValueError, pa.ArrowException):
         raise _unreadable(path) from None
     if not {"case", "identity", "same_as"} <= set(cases.column_names):
         raise _unreadable(path)
@@ -121,7 +122,7 @@ def read_columns(directory: Path, kind: Kind) -> pa.Schema:
     try:
         with opened(path, "table") as file:
             return pq.read_schema(file)
-    except (OSError, SettingsError, pa.ArrowException):
+    except (OSError, ValueError, pa.ArrowException):
         if kind == "teachers" and not path.parent.exists():
             return pa.schema([])
         raise _unreadable(path) from None
