@@ -30,7 +30,7 @@ KNOWS: dict[str, set[str]] = {
     "arguments": {"mistakes", "errors"},
     "names": {"mistakes"},
     "settings": {"mistakes", "errors", "arguments"},
-    "files": {"mistakes", "settings"},
+    "files": {"mistakes", "errors", "settings"},
     "progress": set(),
     "numerics": GROUND,
     "world": GROUND | {"numerics"},

@@ -7,6 +7,7 @@ The same lines come from a TOML file (`read_toml`) and from Python (`explain`).
 from __future__ import annotations
 
 import json
+import stat
 import tomllib
 from collections.abc import Iterator
 from datetime import date, time
@@ -128,20 +129,24 @@ def validated(data: dict[str, Any], model: type[Model]) -> Model:
 
 
 def opened(path: Path, what: str) -> IO[bytes]:
-    """Return a file that is there to be read; `what` it should be is told of a directory.
+    """Return a regular file that is there to be read; `what` it should be is told of any other.
 
-    Raises SettingsError if it cannot be opened.
+    A pipe, a socket or a device may never end, and opening one may wait for ever. Raises
+    SettingsError if it cannot be opened.
     """
     try:
-        return path.open("rb")
+        mode = path.stat().st_mode
+        file = path.open("rb") if stat.S_ISREG(mode) else None
     except FileNotFoundError:
         raise SettingsError(f"{path}: no such file") from None
-    except IsADirectoryError:
-        raise SettingsError(f"{path}: is a directory, not a {what}") from None
     except OSError as error:
         raise SettingsError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError as error:
         raise SettingsError(f"{str(path)!r}: is no path: {error}") from None
+    if file is None:
+        kind = "directory" if stat.S_ISDIR(mode) else "special file"
+        raise SettingsError(f"{path}: is a {kind}, not a {what}")
+    return file
 
 
 def _text(path: Path, largest: int) -> str:

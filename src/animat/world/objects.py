@@ -8,6 +8,7 @@ from numpy import float64
 from numpy.typing import NDArray
 from pydantic import (
     Field,
+    PlainSerializer,
     PlainValidator,
     ValidationInfo,
     WithJsonSchema,
@@ -62,7 +63,10 @@ class ObjectType(Settings):
 
     name: str
     shape: Annotated[
-        str | int | Corners, PlainValidator(_known_shape), WithJsonSchema(_SHAPE_SCHEMA)
+        str | int | Corners,
+        PlainValidator(_known_shape),
+        PlainSerializer(lambda shape: shape, return_type=Any),
+        WithJsonSchema(_SHAPE_SCHEMA),
     ]
     size_mm: Annotated[float, Field(gt=0)] | None = None
     features: Annotated[dict[str, float], Field(min_length=1)]

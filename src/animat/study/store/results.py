@@ -30,6 +30,7 @@ from animat.study.design.study import Study
 from animat.study.living.numbering import KINDS, Kind, Numbering, Part
 from animat.study.living.seal import Seal, seal_of
 from animat.study.store.description import read_cases, read_columns, read_manifest, read_text
+from animat.study.store.intact import Intact
 from animat.study.store.tally import Tally
 
 if TYPE_CHECKING:
@@ -114,14 +115,26 @@ class Results:
                 tally.add(part, seal.steps, seal.failed)
         return tally
 
+    def unusable(self) -> list[str]:
+        """Return a line for every part that its file does not hold, without reading its values."""
+        parts = [part for kind in KINDS for part in self._there(kind)]
+        files = [(self.directory / part.file, part) for part in parts]
+        try:
+            found = [self._intact.wrong(file, part, unread=True) for file, part in files]
+        except SettingsError as error:  # the study file has changed
+            return list(error.problems)
+        return [*filter(None, found)]
+
     def dataset(self, kind: Kind = "lives") -> ds.Dataset:
         """Return the parts that are finished as a dataset, which reads only what is asked of it.
 
-        Its lives stand under the case they were lived for, without factors.
+        Its lives stand under the case they were lived for, without factors. Raises SettingsError
+        where a part is not as it was written, or not where it belongs.
         """
         columns = read_columns(self.directory, _known(kind))
-        files = [str(self.directory / part.file) for part in self._finished(kind)]
-        return ds.dataset(files, schema=columns, format="parquet")
+        files = {self.directory / part.file: part for part in self._there(kind)}
+        self._intact.check(files, columns)
+        return ds.dataset([*map(str, files)], schema=columns, format="parquet")
 
     def lives(
         self, columns: Sequence[str] | None = None, where: pc.Expression | None = None
@@ -195,22 +208,36 @@ class Results:
 
     def _finished(self, kind: Kind) -> dict[Part, Seal]:
         """Return the parts that are there, with their seals; what is torn or no part is not."""
-        numbering = self.numbering[kind]
         found = {}
-        for path in sorted((self.directory / kind).glob("part-*.parquet")):
-            number = path.stem.removeprefix("part-")
-            part = Part(kind, int(number) if number.isdecimal() else numbering.parts)
-            if part.number >= numbering.parts or path != self.directory / part.file:
-                continue
-            seal = seal_of(path)
-            if seal is not None and seal.rows == numbering.rows(part.number):
+        for part in self._there(kind):
+            seal = seal_of(self.directory / part.file)
+            if seal is not None and seal.rows == self.numbering[kind].rows(part.number):
                 found[part] = seal
         return found
 
+    def _there(self, kind: Kind) -> Iterator[Part]:
+        """Yield the parts that have a file, whatever is in it."""
+        numbering = self.numbering[kind]
+        for path in sorted((self.directory / kind).glob("part-*.parquet")):
+            number = path.stem.removeprefix("part-")
+            part = Part(kind, int(number) if number.isdecimal() else numbering.parts)
+            if part.number < numbering.parts and path == self.directory / part.file:
+                yield part
+
+    @cached_property
+    def _intact(self) -> Intact:
+        engine = self.manifest["engine"]
+        return Intact(self.directory, engine, self.study, self.cases, self.numbering)
+
     def _beside(self, folder: str, kind: Kind, prefix: str) -> pa.Table:
         """Return what is kept beside the lives that are finished."""
-        names = (f"{prefix}-{part.number:06d}.parquet" for part in self._finished(kind))
-        files = [path for name in names if (path := self.directory / folder / name).exists()]
+        own = {f"{prefix}-{part.number:06d}.parquet": part for part in self._there(kind)}
+        files = {
+            path: part
+            for name, part in own.items()
+            if (path := self.directory / folder / name).exists()
+        }
+        self._intact.check(files)
         with _whole(self.directory):
             tables = [pq.read_table(file) for file in files]
         if not tables:
