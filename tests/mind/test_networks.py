@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.mind.affordance import feed_forward, weight_count
@@ -15,7 +15,6 @@ def networks(seed=0, behaviours=EAT_AND_REST, features=("shape", "size"), hidden
     return Networks(behaviours, features, hidden, np.random.default_rng(seed).normal(size=shape))
 
 
-@settings(max_examples=30, deadline=None)
 @given(st.integers(0, 2**32), st.integers(1, 4), st.integers(1, 4), st.integers(1, 5))
 def test_likelihoods_go_by_the_names_of_features_and_behaviours(seed, b, f, hidden):
     behaviours = tuple(f"act{n}" for n in range(b))

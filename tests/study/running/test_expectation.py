@@ -7,7 +7,7 @@ import tomllib
 import numpy as np
 import pyarrow as pa
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.life.lives import live_many
@@ -29,7 +29,6 @@ def measured(lifespans: list[int], cap: int) -> Measured:
     return Measured(table, cap, 1.0, [None] * len(steps))
 
 
-@settings(deadline=None)
 @given(st.lists(st.integers(1, 200), min_size=1), st.integers(1, 100), st.integers(0, 300))
 def test_a_mean_lifespan_lies_between_what_was_seen_and_the_cap(lifespans, cap, more):
     seen = measured(lifespans, cap)
