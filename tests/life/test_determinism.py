@@ -72,6 +72,7 @@ COMPILED = "haswell" if "haswell" in POSSIBLE else "generic"
 WITHOUT_AVX = {"generic", "nehalem"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", POSSIBLE if NIGHTLY else ["uncompiled", COMPILED])
 def test_golden_lives_are_the_same_on_code_for(name, tmp_path):
     said = processors.lived_on(name, tmp_path, "short" if NIGHTLY else "few")

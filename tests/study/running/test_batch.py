@@ -28,6 +28,8 @@ from animat.study.running.worker import ClusterError
 
 from .patience import LONGEST, PATIENT
 
+pytestmark = pytest.mark.long
+
 SBATCH = """#!/bin/sh
 cp "$1" job.sh
 setsid sh job.sh > job.log 2>&1 &

@@ -37,6 +37,8 @@ from animat.study.running.worker import ClusterError, begun
 
 from .patience import LONGEST, PATIENT
 
+pytestmark = pytest.mark.long
+
 SOURCE = Path(animat.__file__).parents[1]
 
 IMMORTAL = """

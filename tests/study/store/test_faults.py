@@ -22,6 +22,8 @@ from animat.study import provenance
 from animat.study.store import lock, log
 from animat.study.store.status import status
 
+pytestmark = pytest.mark.long
+
 KILLED = -9
 
 
