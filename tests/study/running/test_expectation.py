@@ -127,11 +127,8 @@ def test_the_mean_lifespan_is_near_that_of_the_lives_then_lived():
 def test_lives_that_fail_are_told_of(tmp_path, turn, lost):
     own = tmp_path / "own.py"
     own.write_text(lost)
-    expected = expect(
-        plan_of(
-            f'steps = 500\n[mind]\nwander = "{own}:walk"\nturn_speed = {turn}\n[record]\nwhat = "all"'
-        )
-    )
+    mind = f'[mind]\nwander = "{own}:walk"\nturn_speed = {turn}\n'
+    expected = expect(plan_of(f'steps = 500\n{mind}[record]\nwhat = "all"'))
     assert 0 < len(expected.errors) <= expected.measured_lives
     assert (len(expected.errors) == expected.measured_lives) == (turn == 1)
     assert all(error.startswith("ValueError: lost, in step") for error in expected.errors)
