@@ -265,7 +265,8 @@ from animat.numerics.elementary import exponential, logistic, sine_cosine
 def product_and_sum(x):
     return x * x + 1.0
 fused = numba.njit(**{**OPTIONS, "fastmath": True})(product_and_sum)
-for function in (sine_cosine, exponential, logistic, fused):
+ours = [numba.njit(**OPTIONS)(one.py_func) for one in (sine_cosine, exponential, logistic)]
+for function in (*ours, fused):
     function(0.3)
     print("=====", *function.inspect_asm().values())
 """

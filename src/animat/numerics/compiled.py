@@ -29,10 +29,12 @@ from typing import Any, TypeVar
 
 import numba
 import numpy as np
-from numba.core import utils
+from numba.core import config, utils
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, install_listener
+
+from animat.numerics.inlined import inlined
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -50,7 +52,9 @@ sys.modules.setdefault(utils._dynamic_modname, utils._dynamic_module)
 
 def compiled(function: Function) -> Function:
     """Compile a function of a step; with `NUMBA_DISABLE_JIT=1` it stays plain Python."""
-    return _identified(numba.njit(forceinline=True, **OPTIONS)(function), function)
+    if getattr(config, "DISABLE_JIT", False):
+        return function
+    return _identified(inlined(function, **OPTIONS), function)
 
 
 def kernel(function: Function) -> Function:
