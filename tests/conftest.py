@@ -8,6 +8,7 @@ has started the tests in the background and had them pay no heed to it.
 from __future__ import annotations
 
 import fcntl
+import math
 import os
 import signal
 from pathlib import Path
@@ -48,6 +49,27 @@ def lost() -> str:
     name.
     """
     return LOST
+
+
+@pytest.fixture(scope="session")
+def compiled() -> None:
+    """Have the kernels of a life compiled, so that no command tells that it compiles them."""
+    from animat.life.life import live
+    from animat.mind.mind import Mind
+    from animat.world.world import World
+
+    world = World.random({"TS": 1, "CL": 1}, seed=1)
+    for record in (None, "all"):
+        live(Mind(), world, steps=1, record=record)
+
+
+@pytest.fixture
+def commanded(compiled: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Be in an empty directory, where no command tells of its progress before its end."""
+    from animat import progress
+
+    monkeypatch.setattr(progress, "LINE_EVERY", math.inf)
+    monkeypatch.chdir(tmp_path)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
