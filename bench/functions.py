@@ -20,7 +20,7 @@ import numpy as np
 
 import animat
 import figures
-from animat.life.lives import live_on
+from animat.life.batch import advance
 from animat.life.setting import Setting, bring_together
 from animat.mind.affordance import back_propagate, feed_forward
 from animat.mind.behaviours import curved_wander
@@ -75,7 +75,7 @@ def timed(setting: Setting, steps: int) -> tuple[float, bytes]:
     lives = np.arange(LIVES, dtype=np.uint64)
     states, present = setting.begin(1, lives)
     start = time.thread_time()
-    live_on(setting, 1, lives, states, present, steps)
+    advance(setting, 1, lives, states, present, steps)
     spent = time.thread_time() - start
     states["readings"] = 0  # a search of one's own is also shown the noise of the dark
     return spent, states.tobytes()

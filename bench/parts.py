@@ -26,7 +26,7 @@ import numpy as np
 import animat
 import figures
 import machine
-from animat.life.lives import live_on
+from animat.life.batch import advance
 from animat.life.setting import Setting, bring_together
 from animat.mind.behaviours import ACT, WANDER
 from figures import Table
@@ -54,7 +54,7 @@ def sample(setting: Setting, lives: int, every: int, times: int) -> Sample:
     states, present = setting.begin(1, indices)
     kept = []
     for turn in range(1, times + 1):
-        live_on(setting, 1, indices, states, present, turn * every)
+        advance(setting, 1, indices, states, present, turn * every)
         kept.append(states.copy())
     states = np.concatenate(kept)
     wanders = states["mode"] == WANDER

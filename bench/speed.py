@@ -18,7 +18,7 @@ import numpy as np
 
 import animat
 import figures
-from animat.life.lives import live_on
+from animat.life.batch import advance
 from animat.life.setting import Setting, bring_together
 from figures import Table, Target
 
@@ -67,7 +67,7 @@ def timing(setting: Setting, lives: int, steps: int) -> Callable[[], float]:
     def measure() -> float:
         states, present = setting.begin(1, indices)
         start = time.thread_time()
-        live_on(setting, 1, indices, states, present, steps)
+        advance(setting, 1, indices, states, present, steps)
         return 1e9 * (time.thread_time() - start) / (lives * steps)
 
     return measure

@@ -119,7 +119,7 @@ UNWRITABLE = {
     "no/a.parquet": "there is no directory no",
     "directory.parquet": "is a directory",
     "there.parquet": "is there already; --force replaces it",
-    "a.csv": "give a name that ends in .parquet",
+    "a.txt": "give a name that ends in .parquet",
     "there.parquet/a.parquet": "there is no directory there.parquet",
     "/proc/a.parquet": "cannot be written",
     "": "give a name that ends in .parquet",

@@ -20,8 +20,8 @@ from pathlib import Path
 import numpy as np
 
 import animat
+from animat.life.batch import Batch
 from animat.life.likelihoods import afforded, likelihoods
-from animat.life.lives import live_states
 from animat.life.setting import bring_together
 
 TYPES = ("TS", "TL", "CS", "CL")
@@ -54,7 +54,7 @@ def main() -> None:
             return
         school = animat.World.load(options.teacher) if options.teacher else world
         setting = bring_together(learner, school)
-        states = live_states(setting, SEED, robots, 300_000)
+        states = Batch(setting, SEED, 300_000).run(robots).states
         error = np.abs(likelihoods(setting, states).mean(axis=0) - afforded(setting)).max()
         networks = [
             animat.Networks(tuple(learner.behaviours), school.feature_names, hidden, weights)

@@ -13,7 +13,7 @@ import numpy as np
 import work
 
 import animat
-from animat.life.lives import live_on
+from animat.life.batch import advance
 from animat.life.setting import Setting, bring_together
 
 POST = animat.ObjectType(
@@ -45,7 +45,7 @@ class Robots:
     def step(self, steps: int) -> None:
         """Live on for so many steps."""
         self.until += steps
-        live_on(self.setting, self.seed, self.lives, self.states, self.present, self.until)
+        advance(self.setting, self.seed, self.lives, self.states, self.present, self.until)
 
     def turning(self) -> float:
         """Return the share of robots that are turning away now."""

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from animat.mind.networks import Networks
     from animat.robot.khepera import Khepera
     from animat.settings import SettingsError
+    from animat.study.from_python import StudyRun, run
     from animat.study.one_life import record
+    from animat.version import __version__ as __version__
     from animat.world.arena import Arena
     from animat.world.layout import Layout, Placement
     from animat.world.objects import TABLE_1, ObjectType
@@ -42,12 +44,15 @@ _HOMES = {
     "Placement": "animat.world.layout",
     "Recording": "animat.life.recording",
     "SettingsError": "animat.settings",
+    "StudyRun": "animat.study.from_python",
     "TABLE_1": "animat.world.objects",
     "VariableChange": "animat.mind.mind",
     "World": "animat.world.world",
+    "__version__": "animat.version",
     "live": "animat.life.life",
     "live_many": "animat.life.lives",
     "record": "animat.study.one_life",
+    "run": "animat.study.from_python",
 }
 
 __all__ = [
@@ -67,11 +72,13 @@ __all__ = [
     "Placement",
     "Recording",
     "SettingsError",
+    "StudyRun",
     "VariableChange",
     "World",
     "live",
     "live_many",
     "record",
+    "run",
 ]
 
 

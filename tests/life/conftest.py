@@ -11,8 +11,8 @@ import pyarrow as pa
 import pytest
 from numpy.typing import NDArray
 
+from animat.life.batch import advance
 from animat.life.life import Life, live
-from animat.life.lives import live_on
 from animat.life.setting import bring_together
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
@@ -140,7 +140,7 @@ def _step_by_step(
     states, present = setting.begin(seed, lives)
     yield states[0].copy(), present[0].copy()
     for until in range(1, steps + 1):
-        live_on(setting, seed, lives, states, present, until)
+        advance(setting, seed, lives, states, present, until)
         yield states[0].copy(), present[0].copy()
 
 

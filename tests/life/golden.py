@@ -25,9 +25,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.life.batch import advance
 from animat.life.digest import digest
 from animat.life.engine import ENGINE
-from animat.life.lives import live_on
 from animat.life.setting import bring_together
 from animat.mind.agents import AGENTS
 from animat.mind.mind import Mind
@@ -142,7 +142,7 @@ def lived(case: Case, steps: int) -> tuple[np.record, NDArray[np.uint8]]:
     setting = bring_together(case.mind, case.world, case.robot)
     lives = np.array([5], np.uint64)
     states, present = setting.begin(SEED, lives)
-    live_on(setting, SEED, lives, states, present, steps)
+    advance(setting, SEED, lives, states, present, steps)
     return states[0], present[0]
 
 
@@ -189,7 +189,7 @@ def many(batch: int = MANY, threads: int = 1, shuffled: bool = False) -> str:
     def part(start: int) -> list[tuple[int, str]]:
         lives = order[start : start + batch].copy()
         states, present = setting.begin(SEED, lives)
-        live_on(setting, SEED, lives, states, present, SHORT)
+        advance(setting, SEED, lives, states, present, SHORT)
         return [
             (int(life), digest(state, there))
             for life, state, there in zip(lives, states, present, strict=True)

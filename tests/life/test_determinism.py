@@ -13,10 +13,11 @@ import pytest
 from hypothesis import settings
 
 from animat.life import lives as life_lives
+from animat.life.batch import advance
 from animat.life.digest import digest
 from animat.life.engine import ENGINE
 from animat.life.life import live
-from animat.life.lives import live_many, live_on
+from animat.life.lives import live_many
 from animat.life.setting import bring_together
 from animat.mind.agents import AGENTS
 from animat.mind.mind import Mind
@@ -143,7 +144,7 @@ def test_a_life_may_be_cut_anywhere(cut, small):
     lives = np.array([3], np.uint64)
     states, present = setting.begin(8, lives)
     for until in [*range(cut, 1_500, cut), 1_500]:
-        live_on(setting, 8, lives, states, present, until)
+        advance(setting, 8, lives, states, present, until)
     whole = live(Mind(agent="LEARNING"), small, seed=8, life=3, steps=1_500)
     assert digest(states[0], present[0]) == digest(whole.state, present[0])
 
@@ -168,7 +169,7 @@ def test_the_largest_indices_are_lives_like_others(small):
     assert len(set(alone.values())) == len(indices)
     for order in (indices, indices[::-1].copy()):
         states, present = setting.begin(1, order)
-        live_on(setting, 1, order, states, present, 900)
+        advance(setting, 1, order, states, present, 900)
         ends = [digest(*one) for one in zip(states, present, strict=True)]
         assert ends == [alone[int(index)] for index in order]
 

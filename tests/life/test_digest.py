@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from animat.life.batch import advance
 from animat.life.digest import SCRATCH, digest
-from animat.life.lives import live_on
 from animat.life.setting import bring_together
 from animat.life.state import state_dtype
 from animat.mind.mind import Mind
@@ -69,7 +69,7 @@ def test_what_it_leaves_out_holds_nothing_from_step_to_step(agent, small):
     for spoilt in (False, True):
         states, present = setting.begin(4, lives)
         for until in range(1, 1_501):
-            live_on(setting, 4, lives, states, present, until)
+            advance(setting, 4, lives, states, present, until)
             if spoilt:
                 for name in SCRATCH:
                     states[name] = 10**9 if states[name].dtype.kind == "i" else np.nan

@@ -6,9 +6,10 @@ import threading
 import numpy as np
 import pytest
 
+from animat.life import batch
 from animat.life import lives as module
 from animat.life.life import live
-from animat.life.lives import live_chunks, live_many, live_states
+from animat.life.lives import live_chunks, live_many
 from animat.life.setting import LifeError, bring_together
 from animat.mind.mind import Mind
 from animat.report.survival import ALIVE
@@ -38,7 +39,7 @@ def test_the_number_of_threads_does_not_matter(threads, many, small):
 @pytest.mark.parametrize(("chunk", "length"), [(1, 10_000), (7, 333), (1_000, 1)])
 def test_chunks_and_slices_do_not_matter(chunk, length, many, small, monkeypatch):
     monkeypatch.setattr(module, "chunk_size", lambda steps, lives, threads: chunk)
-    monkeypatch.setattr(module, "SLICE", length)
+    monkeypatch.setattr(batch, "LOOK_EVERY", length)
     steps, lives = (STEPS, 70) if length > 1 else (300, 10)
     told = live_many(Mind(), small, lives=lives, seed=6, steps=steps)
     if length > 1:
@@ -113,12 +114,17 @@ def test_progress_is_told_as_steps_lived(small):
 
 def test_lives_stop_soon_when_they_are_told_to(small):
     """As Ctrl-C does: the lives under way end at the next look outside."""
+    stop, told = threading.Event(), []
     setting = bring_together(Mind(death=False), small)
-    stop = threading.Event()
-    states = live_states(
-        setting, 1, np.arange(4, dtype=np.uint64), 10**9, None, stop, lambda _: stop.set()
-    )
-    assert (states["step"] == module.SLICE).all()
+
+    def progress(steps):
+        told.append(steps)
+        stop.set()
+
+    own = batch.Batch(setting, 1, 10**9, stop=stop, progress=progress)
+    with pytest.raises(batch.StoppedError):
+        own.run(np.arange(4, dtype=np.uint64))
+    assert told == [4 * batch.LOOK_EVERY]
 
 
 def test_an_interruption_reaches_the_caller_and_stops_the_threads(small):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
+from animat.life.batch import advance
 from animat.life.life import live
-from animat.life.lives import live_on
 from animat.life.setting import bring_together
 from animat.mind.behaviours import ACT
 from animat.mind.mind import Mind
@@ -69,7 +69,7 @@ def stayed(setting, lives, steps, seed):
     x, y, acts = (np.full((looks, lives), np.nan) for _ in range(3))
     held = np.zeros(lives, bool)
     for look, until in enumerate(range(LOOK, steps + 1, LOOK)):
-        live_on(setting, seed, indices, states, present, until)
+        advance(setting, seed, indices, states, present, until)
         now, first = look % looks, (look + 1) % looks
         x[now], y[now] = states["x"], states["y"]
         acts[now] = states["acts"]
@@ -96,7 +96,7 @@ def test_a_robot_between_rays_and_ring_gets_free_again():
     setting = bring_together(MINDS["content"], World.abundant(), Khepera(infrared="linear"))
     held, states = stayed(setting, 500, 10_000, seed=5)
     blocked = states["blocked"].copy()
-    live_on(
+    advance(
         setting, 5, np.arange(500, dtype=np.uint64), states, np.ones((500, 99), np.uint8), 12_000
     )
     assert held.mean() < 0.05

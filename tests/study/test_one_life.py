@@ -1,5 +1,6 @@
 """One life from the command line: what is told and written is the life itself."""
 
+import re
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -14,7 +15,7 @@ from animat.mind.mind import Mind
 from animat.settings import SettingsError
 from animat.study import one_life
 from animat.study.design.settings import LifeSettings
-from animat.study.one_life import FIGURE_ROWS, OneLife, live_one, story
+from animat.study.one_life import OneLife, live_one, story
 from animat.world.world import World
 
 
@@ -58,15 +59,14 @@ def test_the_figure_is_of_the_kind_its_name_says(tmp_path, name, start):
     assert [each.name for each in tmp_path.iterdir()] == [name]
 
 
-def test_the_figure_of_a_long_life_is_drawn_from_few_rows(tmp_path, monkeypatch):
-    monkeypatch.setattr(one_life, "FIGURE_ROWS", 100)
-    drawn = []
-    figure = life_module.Life.figure
-    monkeypatch.setattr(life_module.Life, "figure", lambda self: drawn.append(self) or figure(self))
+def test_the_figure_of_a_life_in_parts_is_that_of_its_whole_trace(tmp_path, monkeypatch):
+    monkeypatch.setattr(life_module, "SLICE", 400)
     life = live_one(asked(figure=tmp_path / "a.svg"), silent)
-    assert life.lifespan > 200
-    assert 100 <= drawn[0].trace.num_rows < 200
-    assert FIGURE_ROWS >= 100_000
+    whole = live(life.mind, life.world, seed=life.seed, life=life.index, record="all")
+    whole.figure().savefig(tmp_path / "b.svg")
+    drawn = [re.findall(r' d="(.*?)"', (tmp_path / f"{n}.svg").read_text(), re.S) for n in "ab"]
+    assert life.lifespan > 400
+    assert sorted(drawn[0]) == sorted(drawn[1])
 
 
 def test_af_learns_first_if_it_knows_nothing(monkeypatch):

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 import traceback
 from io import TextIOWrapper
-from typing import NoReturn
+from typing import Annotated, NoReturn
 
 import typer
 
 from animat.cli.options import Debug
+from animat.version import __version__
 
 app = typer.Typer(
     name="animat",
@@ -22,11 +24,28 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
+KERNEL_THREAD = "animat"
+"""The name of the threads of `animat.numerics.threads`, which may still be at work at the end."""
+
 DONE, FAILED, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
+def _say_version(asked: bool) -> None:
+    if asked:
+        print(f"animat {__version__}")
+        raise typer.Exit
+
+
 @app.callback()
-def _animat(debug: Debug = False) -> None:
+def _animat(
+    debug: Debug = False,
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Say which version this is.", callback=_say_version, is_eager=True
+        ),
+    ] = False,
+) -> None:
     """Read the options that go before every command."""
 
 
@@ -58,7 +77,8 @@ def _explain(error: Exception) -> NoReturn:
     if usage := getattr(error, "format_message", None):
         _leave(usage(), WRONG_INPUT)
     if isinstance(error, SettingsError):
-        _leave(str(error), WRONG_INPUT)
+        failed = type(error).__name__ == "FailedLifeError"  # its module takes Numba to import
+        _leave(str(error), FAILED if failed else WRONG_INPUT)
     if isinstance(error, RunError):
         _leave(str(error), FAILED)
     what = str(error)
@@ -76,4 +96,8 @@ def _leave(text: str, code: int) -> NoReturn:
     except OSError:
         # Python would try once more at its end, and complain.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if code == INTERRUPTED and any(t.name == KERNEL_THREAD for t in threading.enumerate()):
+        # Compiled code that never returns must not see Python taken down around it.
+        sys.stderr.flush()
+        os._exit(code)
     sys.exit(code)

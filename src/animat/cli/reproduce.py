@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from animat.cli.app import app
-from animat.cli.options import Debug, Seed, SettingsFile, compiling_told, settings_of
+from animat.cli.options import CheckFunctions, Debug, Seed, SettingsFile, settings_of
 
 if TYPE_CHECKING:
     from animat.study.reproduction.reproduction import Reproduction
@@ -36,6 +36,7 @@ def reproduce(
     settings: SettingsFile = None,
     quick: Annotated[bool, typer.Option("--quick", help="Small, under 15 s; for a look.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier result.")] = False,
+    check_functions: CheckFunctions = False,
     debug: Debug = False,
 ) -> None:
     """Run both experiments of the paper and judge its claims."""
@@ -51,9 +52,17 @@ def reproduce(
     chosen = settings_of(settings, physiology=physiology)
     check(chosen, seed, size)
     started = time.monotonic()
-    with fresh_directory(out, force=force) as directory, compiling_told(), telling() as tell:
+    with fresh_directory(out, force=force) as directory, telling() as tell:
         with kept_told(directory):
-            result = run(chosen, seed=seed, size=size, directory=directory, tell=tell, anew=force)
+            result = run(
+                chosen,
+                seed=seed,
+                size=size,
+                directory=directory,
+                tell=tell,
+                anew=force,
+                check_functions=check_functions,
+            )
         publish(result, directory, lambda: tell("Figures and page", 1, len(FIGURES) + 1))
     _print_result(result)
     print(f"{time.monotonic() - started:.0f} s; open {out / 'report.html'}")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from animat.cli.app import DONE, FAILED, INTERRUPTED, app
-from animat.cli.options import Debug, Out, Set, StudyFile, Threads, compiling_told
+from animat.cli.options import CheckFunctions, Debug, Out, Set, StudyFile, Threads
 
 if TYPE_CHECKING:
     from animat.study.living.plan import Plan
@@ -37,10 +37,12 @@ def run(
         int | None,
         typer.Option(help="Jobs a batch system is asked for; one unless given.", min=1),
     ] = None,
+    check_functions: CheckFunctions = False,
     debug: Debug = False,
 ) -> int:
     """Live the lives of a study, or those that its results directory still lacks."""
     from animat.progress import telling
+    from animat.settings import SettingsError
     from animat.study.design.shipped import study_file
     from animat.study.design.study import read_study
     from animat.study.living.plan import plan_of
@@ -48,10 +50,12 @@ def run(
     from animat.study.running.run import run as live
     from animat.study.store.description import MANIFEST
 
-    plan = plan_of(read_study(study_file(study), changes or ()).to_toml())
+    if check_functions and cluster is not None:
+        raise SettingsError("--check-functions: is for this machine; leave out --cluster")
+    plan = plan_of(read_study(study_file(study), changes or ()).to_toml(), check_functions)
     directory = out or Path("results") / plan.study.name
     _say_what(plan, directory)
-    with compiling_told(), telling() as tell, _workers(plan, threads, cluster, jobs) as workers:
+    with telling() as tell, _workers(plan, threads, cluster, jobs) as workers:
         if not (directory / MANIFEST).exists():
             check_livable(plan)
         outcome = live(plan, directory, workers, tell)

@@ -7,9 +7,13 @@ range (2010).
 
 from __future__ import annotations
 
+import math
+
+from animat.life import failure
 from animat.life.sight import distance_to, row_and_column
 from animat.life.state import ABANDONED, DISREGARDED, ENCOUNTERED, NO_SITE
 from animat.mind import affordance, drives, selection
+from animat.mind.affordance import CUSTOM_ESTIMATOR
 from animat.mind.agents import ACCEPT_ALL, ASK_TRUTH
 from animat.mind.behaviours import APPROACH, LEAVE
 from animat.numerics.compiled import compiled
@@ -27,10 +31,13 @@ def look_around(state, mind, robot, raster, present, functions, seed, life):
     perceive(state, mind, raster.features[raster.site_type[site]], seed, life)
     judge(state, mind, raster.affords[raster.site_type[site]], functions)
     luck, _, _, _ = uniforms(seed, life, SELECTION, state.step)
+    state.asked = failure.SELECTOR
     chosen = selection.select(
         mind.selector, state.drives, state.estimates, mind.serves, luck, functions.selector
     )
     if chosen < 0 or chosen >= len(mind.serves):
+        if chosen != -1:
+            failure.fail(state, failure.SELECTOR, float(chosen), 0.0)
         return
     state.event |= ENCOUNTERED
     state.encounters += 1
@@ -71,6 +78,7 @@ def perceive(state, mind, features, seed, life):
 @compiled
 def judge(state, mind, affords, functions):
     """Estimate how likely the object perceived affords each behaviour."""
+    state.asked = failure.ESTIMATOR
     for b in range(len(state.estimates)):
         if mind.judge == ASK_TRUTH:
             state.estimates[b] = affords[mind.needs[b]]
@@ -82,6 +90,8 @@ def judge(state, mind, affords, functions):
                 state.hidden,
                 functions.estimator,
             )
+            if mind.estimator == CUSTOM_ESTIMATOR and not math.isfinite(state.estimates[b]):
+                failure.fail(state, failure.ESTIMATOR, 0.0, 0.0)
 
 
 @compiled

@@ -16,7 +16,7 @@ from animat.life.setting import LifeError, Setting, bring_together
 from animat.life.summary import death_of
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
-from animat.numerics.fingerprint import fingerprint
+from animat.numerics.snapshot import lasting_identity
 from animat.robot.khepera import Khepera
 from animat.settings import Settings, SettingsError, explain
 from animat.world.files import WorldFile, world_file
@@ -186,4 +186,4 @@ def _end(moment: Moment, fields: Fields) -> End:
 def _fingerprints(setting: Setting) -> dict[str, str]:
     """Return the fingerprints of the user's own functions by their role."""
     own = setting.mind.own_functions()
-    return {role: fingerprint(getattr(setting.functions, role)) for role in own}
+    return {role: lasting_identity(getattr(setting.functions, role)) for role in own}

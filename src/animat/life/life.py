@@ -4,25 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from animat.life.batch import Progress, advance, failure
 from animat.life.digest import digest
+from animat.life.failure import FailedLifeError
 from animat.life.setting import LifeError, Setting, bring_together
-from animat.life.slices import live_recorded, live_slice
+from animat.life.slices import live_recorded
 from animat.life.summary import death_of, summary
+from animat.life.table_files import to_pandas, write_csv
 from animat.life.trace import row_dtype, table
-from animat.mind.functions import Functions
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
+from animat.numerics.threads import attempt
 from animat.robot.khepera import Khepera
-from animat.world.raster import Raster
 from animat.world.world import World
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.figure import Figure
 
 SLICE = 100_000
@@ -30,15 +34,12 @@ SLICE = 100_000
 
 LONGEST = 1 << 50
 
-Progress = Callable[[int], None]
-"""Called with the steps lived since the last call."""
-
 
 @dataclass(frozen=True)
 class Life:
     """A life that was lived: its setting, seed and index, its state at the end, and its trace.
 
-    `trace` is a table with a row for each recorded step (columns in docs/trace.md), or None.
+    `trace` is a table with a row for each recorded step (columns in docs/tables.md), or None.
     """
 
     setting: Setting
@@ -74,10 +75,13 @@ class Life:
 
     @property
     def summary(self) -> dict[str, object]:
-        """What was counted in this life, by the names of the columns of a table of lives."""
+        """What was counted in this life, by the names of the columns of a table of lives.
+
+        Its `error` is None: a life that fails is not returned.
+        """
         states = np.array([self.state], self.state.dtype)
         columns = summary(self.setting, self.seed, np.array([self.index]), states)
-        return {name: column[0].as_py() for name, column in columns.items()}
+        return {name: column[0].as_py() for name, column in columns.items()} | {"error": None}
 
     @property
     def networks(self) -> Networks:
@@ -89,16 +93,34 @@ class Life:
             np.array(self.state.weights),
         )
 
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the trace as a pandas table; needs pandas (`pip install animat[pandas]`).
+
+        Raises LifeError if the life was not recorded, SettingsError without pandas.
+        """
+        return to_pandas(self._recorded())
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the trace as a CSV file, replacing what was there.
+
+        Raises LifeError if the life was not recorded, SettingsError for what cannot be written.
+        """
+        write_csv(self._recorded(), path)
+
+    def _recorded(self) -> pa.Table:
+        if self.trace is None:
+            raise LifeError('this life was not recorded: live it with record="all"')
+        return self.trace
+
     def figure(self) -> Figure:
         """Draw the trace: variables, drives, behaviours, rewards and the path.
 
         Raises LifeError if the life was not recorded.
         """
-        if self.trace is None:
-            raise LifeError('this life was not recorded: live it with record="all"')
+        self._recorded()
         from animat.life.drawing import draw_life
 
-        return draw_life(self)
+        return draw_life(self, self.trace)
 
 
 class Moment(NamedTuple):
@@ -136,7 +158,8 @@ class Moment(NamedTuple):
     def live(self, steps: int, record: str | None = None, progress: Progress | None = None) -> Life:
         """Live the life on from here, until it has lived `steps` steps in all, and return it.
 
-        Its trace begins here; this moment stays as it is. See `live`. Raises LifeError.
+        Its trace begins here; this moment stays as it is. See `live`. Raises LifeError, and
+        FailedLifeError.
         """
         choice = TraceChoice.parse(record)
         check(self.seed, self.index, steps)
@@ -178,13 +201,16 @@ def live(
     steps: int = 300_000,
     record: str | None = None,
     progress: Progress | None = None,
+    check_functions: bool = False,
 ) -> Life:
     """Live one life until death or for `steps` steps, and return it.
 
     The life is a pure function of the settings, `seed` and the index `life`. `record` is "all",
-    "every:N", "last:N" (steps) or None. Raises LifeError for what cannot be lived.
+    "every:N", "last:N" (steps) or None. With `check_functions`, custom functions check every index
+    they use. Raises LifeError for what cannot be lived, and FailedLifeError where a custom function
+    raises or gives what no life can go on with.
     """
-    setting = bring_together(mind, world, robot)
+    setting = bring_together(mind, world, robot, check_functions=check_functions)
     choice = TraceChoice.parse(record)
     check(seed, life, steps)
     return _live_on(birth(setting, seed, life), steps, choice, progress)
@@ -207,7 +233,10 @@ def _live_on(
 def lived(
     moment: Moment, steps: int, choice: TraceChoice | None, progress: Progress | None = None
 ) -> Iterator[NDArray[np.void]]:
-    """Live the life on up to `steps`, in place, and yield its rows as they come."""
+    """Live the life on up to `steps`, in place, and yield its rows as they come.
+
+    Raises FailedLifeError.
+    """
     tell = progress or (lambda _: None)
     start = moment.step
     ring = choice is not None and choice.last is not None
@@ -231,37 +260,55 @@ def lived(
 
 
 def live_unrecorded(moment: Moment, until: int) -> None:
-    """Live the life on, in place, until it has lived `until` steps or is dead."""
-    live_slice(
-        moment.states, moment.present, np.array([moment.index], np.uint64), *_rest(moment), until
-    )
+    """Live the life on, in place, until it has lived `until` steps or is dead.
+
+    Raises FailedLifeError.
+    """
+    lives = np.array([moment.index], np.uint64)
+    rest = moment.states, moment.present, until
+    _unfailing(moment, until, lambda: advance(moment.setting, moment.seed, lives, *rest))
 
 
 def live_rows(
     moment: Moment, until: int, rows: NDArray[np.void], every: int = 1, ring: bool = False
 ) -> int:
-    """Live the life on, in place, and fill `rows` [N]; see `live_recorded`. Return how many."""
-    return live_recorded(
-        moment.state,
-        moment.present[0],
-        np.uint64(moment.index),
-        *_rest(moment),
-        until,
-        rows,
-        every,
-        ring,
-    )
+    """Live the life on, in place, and fill `rows` [N]; see `live_recorded`. Return how many.
 
-
-def _rest(moment: Moment) -> tuple[np.record, np.record, Raster, Functions, np.uint64]:
+    Raises FailedLifeError.
+    """
     setting = moment.setting
-    return (
-        setting.mind_parameters,
-        setting.robot_parameters,
-        setting.raster,
-        setting.functions,
-        np.uint64(moment.seed),
+    return _unfailing(
+        moment,
+        until,
+        lambda: live_recorded(
+            moment.state,
+            moment.present[0],
+            np.uint64(moment.index),
+            setting.mind_parameters,
+            setting.robot_parameters,
+            setting.raster,
+            setting.functions,
+            np.uint64(moment.seed),
+            until,
+            rows,
+            every,
+            ring,
+        ),
     )
+
+
+def _unfailing(moment: Moment, until: int, call: Callable[[], Any]) -> Any:
+    """Call what lives a life on up to `until`, in place. Raises FailedLifeError where it fails."""
+    before = moment.copy()
+    result, error = attempt(call)
+    setting, seed, lives = moment.setting, moment.seed, np.array([moment.index], np.uint64)
+    why = failure(
+        setting, seed, lives, moment.states, until, error, lambda: (before.states, before.present)
+    )
+    if why is not None:
+        told = f"life {moment.index} of seed {seed} failed: {why}"
+        raise FailedLifeError(told) from error
+    return result
 
 
 def check(seed: int, life: int, steps: int) -> None:

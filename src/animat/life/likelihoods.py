@@ -8,14 +8,23 @@ from numpy.typing import NDArray
 from animat.life.setting import Setting
 from animat.mind import affordance
 from animat.numerics.compiled import kernel
+from animat.numerics.threads import attempt
 
 
 def likelihoods(setting: Setting, states: NDArray[np.void]) -> NDArray[np.float64]:
-    """Return the likelihoods [L, B, T] of L lives, by behaviour and object type."""
+    """Return the likelihoods [L, B, T] of L lives, by behaviour and object type.
+
+    Those of a life for which a custom estimator raises are NaN.
+    """
     types = setting.raster.features.shape[0]
     behaviours = len(setting.mind.behaviours)
     said = np.zeros((len(states), behaviours, types))
-    _ask(states, setting.mind_parameters, setting.raster.features, setting.functions, said)
+    rest = setting.mind_parameters, setting.raster.features, setting.functions
+    if attempt(lambda: _ask(states, *rest, said))[1] is None:
+        return said
+    for n in range(len(states)):
+        if attempt(lambda n=n: _ask(states[n : n + 1], *rest, said[n : n + 1]))[1] is not None:
+            said[n] = np.nan
     return said
 
 

@@ -1,29 +1,36 @@
-"""Many lives at once: lived on all cores, a chunk at a time, told as a table with a row each."""
+"""Many lives at once: simulated on all cores, a chunk at a time, as a table with a row each."""
 
 from __future__ import annotations
 
 import os
+import warnings
 from collections import deque
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from dataclasses import dataclass
+from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 from numpy.typing import NDArray
 
-from animat.life.life import Progress, check
+from animat.life.batch import Batch, Progress
+from animat.life.life import check
 from animat.life.setting import LifeError, Setting, bring_together
-from animat.life.slices import live_slice
-from animat.life.summary import summary
+from animat.life.summary import NAMES, summary, without_failed
+from animat.life.table_files import to_pandas, write_csv
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
+from animat.numerics.threads import KernelThreads
 from animat.robot.khepera import Khepera
 from animat.world.world import World
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from animat.report.estimates import Estimate
     from animat.report.survival import DeathCount
 
@@ -33,31 +40,73 @@ CHUNK, LARGEST_CHUNK = 32, 8192
 STEPS_OF_A_CHUNK = 2_000_000
 """What a chunk of short lives comes to, so that the table of it costs little beside them."""
 
-SLICE = 10_000
-"""Steps of each life of a chunk between two looks at the outside."""
-
-
 TURNS = 8
 """How many times a thread takes a chunk at least, of lives enough."""
 
 
 @dataclass(frozen=True)
 class Lives:
-    """Lives of one setting and seed: `table` has a row for each (columns in docs/lives.md)."""
+    """Lives of one setting and seed: `table` has a row for each (columns in docs/tables.md).
+
+    A life that failed has its name and the reason in the column `error`, and null elsewhere. No
+    statistic counts it, and each warns of that.
+    """
 
     table: pa.Table
 
+    @property
+    def failed(self) -> int:
+        """How many of them failed."""
+        return self.table.num_rows - self.table["error"].null_count
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the table as one of pandas; needs pandas (`pip install animat[pandas]`).
+
+        Raises SettingsError without it.
+        """
+        return to_pandas(self.table)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the table as a CSV file, replacing what was there. Raises SettingsError."""
+        write_csv(self.table, path)
+
     def mean_lifespan(self) -> Estimate:
-        """Return the mean lifespan in steps, restricted at the cap, and its 95 % interval."""
+        """Return the mean lifespan in steps, restricted at the cap, and its 95 % interval.
+
+        Raises LifeError if every life failed.
+        """
         from animat.report.survival import mean_lifespan
 
-        return mean_lifespan(self.table)
+        return mean_lifespan(self._whole())
 
     def causes(self) -> list[DeathCount]:
-        """Return how the lives ended, the most frequent way first."""
+        """Return how the lives ended, the most frequent way first.
+
+        Raises LifeError if every life failed.
+        """
         from animat.report.survival import causes
 
-        return causes(self.table)
+        return causes(self._whole())
+
+    def _whole(self) -> pa.Table:
+        """Return the lives that did not fail; say so if that is not all."""
+        if not self.failed:
+            return self.table
+        if self.failed == self.table.num_rows:
+            raise LifeError(f"all {self.failed} lives failed; the column error says why")
+        self.warn("they are left out of account")
+        return self.table.filter(pc.field("error").is_null())
+
+    def warn(self, what: str) -> None:
+        """Warn of lives that failed, with the first of them, if any did."""
+        if self.failed:
+            first = self.table.filter(pc.field("error").is_valid()).slice(0, 1).to_pylist()[0]
+            warnings.warn(
+                f"{self.failed} of {self.table.num_rows} lives failed; {what}; such as life"
+                f" {first['life']}: {first['error']}",
+                RuntimeWarning,
+                stacklevel=3,
+            )
 
 
 def live_many(
@@ -72,21 +121,26 @@ def live_many(
     networks: Sequence[Networks] | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
+    check_functions: bool = False,
 ) -> Lives:
     """Live the lives `first` to `first + lives - 1` of a seed, on all cores, and return them.
 
     `networks` gives life i the networks i modulo their number, in place of the mind's own. Lives
-    of equal seed and index start in the same pose and meet the same luck, whatever their mind.
-    Raises LifeError for what cannot be lived.
+    with the same seed and index share their starting pose and random numbers, whatever the mind.
+    A life fails where a custom function raises or gives what no life can go on with; the others go
+    on, a RuntimeWarning tells of it, and the column `error` says why. With `check_functions`,
+    custom functions check every index they use. Raises LifeError for what cannot be lived.
     """
     if networks is not None:
         if not networks:
             raise LifeError("networks is empty; give at least one")
         mind = Mind(**{**dict(mind), "networks": networks[0]})
-    setting = bring_together(mind, world, robot)
+    setting = bring_together(mind, world, robot, check_functions=check_functions)
     weights = None if networks is None else np.array([one.weights for one in networks])
     chunks = live_chunks(setting, seed, first, lives, steps, weights, threads, progress)
-    return Lives(pa.concat_tables(pa.table(chunk) for chunk in chunks).unify_dictionaries())
+    lived = Lives(pa.concat_tables(chunks).unify_dictionaries())
+    lived.warn("the others are kept")
+    return lived
 
 
 def live_chunks(
@@ -98,28 +152,30 @@ def live_chunks(
     weights: NDArray[np.float64] | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
-) -> Iterator[dict[str, pa.Array]]:
-    """Yield the columns of chunk after chunk of lives, in the order of their index.
+) -> Iterator[pa.Table]:
+    """Yield chunk after chunk of lives, in the order of their index.
 
     Only as many chunks as there are threads are held at a time.
     """
     check(seed, first, steps)
     if lives < 1:
         raise LifeError(f"lives = {lives}; allowed are whole numbers from 1")
+    setting.begin(seed, np.array([first], np.uint64))  # a world without room is told of at once
     threads = threads or os.cpu_count() or 1
     stop = Event()
-
+    batch = Batch(setting, seed, steps, stop=stop, progress=progress)
     size = chunk_size(steps, lives, threads)
 
-    def chunk(start: int) -> dict[str, pa.Array]:
+    def chunk(start: int) -> pa.Table:
         indices = np.arange(start, min(start + size, first + lives), dtype=np.uint64)
         own = None if weights is None else weights[indices % np.uint64(len(weights))]
-        states = live_states(setting, seed, indices, steps, own, stop, progress)
-        return summary(setting, seed, indices, states)
+        result = batch.run(indices, own)
+        columns = summary(setting, seed, indices, result.states)
+        return pa.table(without_failed(columns, result.errors, NAMES))
 
     starts = iter(range(first, first + lives, size))
-    under_way: deque[Future[dict[str, pa.Array]]] = deque()
-    with ThreadPoolExecutor(threads) as pool:
+    under_way: deque[Future[pa.Table]] = deque()
+    with KernelThreads(threads) as pool:
         try:
             while True:
                 while len(under_way) < 2 * threads and (start := next(starts, None)) is not None:
@@ -138,48 +194,3 @@ def chunk_size(steps: int, lives: int, threads: int) -> int:
     """
     share = -(-lives // (TURNS * threads))
     return max(min(STEPS_OF_A_CHUNK // steps, LARGEST_CHUNK, share), CHUNK)
-
-
-def live_states(
-    setting: Setting,
-    seed: int,
-    lives: NDArray[np.uint64],
-    steps: int,
-    weights: NDArray[np.float64] | None = None,
-    stop: Event | None = None,
-    progress: Progress | None = None,
-) -> NDArray[np.void]:
-    """Live the lives of the given indices [L] and return their states [L] at the end."""
-    states, present = setting.begin(seed, lives, weights)
-    until = 0
-    before = 0
-    while until < steps and not states["dead"].all() and not (stop and stop.is_set()):
-        until = min(until + SLICE, steps)
-        live_on(setting, seed, lives, states, present, until)
-        if progress:
-            now = int(states["step"].sum())
-            progress(now - before)
-            before = now
-    return states
-
-
-def live_on(
-    setting: Setting,
-    seed: int,
-    lives: NDArray[np.uint64],
-    states: NDArray[np.void],
-    present: NDArray[np.uint8],
-    until: int,
-) -> None:
-    """Live L lives on, in place, until each has lived `until` steps or is dead."""
-    live_slice(
-        states,
-        present,
-        lives,
-        setting.mind_parameters,
-        setting.robot_parameters,
-        setting.raster,
-        setting.functions,
-        np.uint64(seed),
-        until,
-    )

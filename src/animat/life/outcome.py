@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from animat.life import failure
 from animat.life.encounter import abandon
 from animat.life.sight import OUT_OF_SIGHT, distance_to
 from animat.life.state import DIED, FAILED, HIGH, LOW, SUCCEEDED, TRAINED
@@ -48,9 +49,11 @@ def suffer(state, mind, effects, functions):
         state.aftermath[v] = state.values[v] + effects[v]
         state.changes_after[v] = state.changes[v] + effects[v]
     if mind.learns:
-        drives.raise_drives(
+        state.asked = failure.DRIVES
+        if not drives.raise_drives(
             state.aftermath, state.changes_after, mind, state.drives_after, functions.drives
-        )
+        ):
+            failure.fail(state, failure.DRIVES, 0.0, 0.0)
         acting = mind.serves[state.behaviour]
         variation = state.drives_after[acting] - state.drives[acting]
         if abs(variation) > mind.learning_threshold:
@@ -63,10 +66,12 @@ def train(state, mind, target, functions):
     """Train the network of the behaviour that was run towards what came of it."""
     state.event |= TRAINED
     state.trainings += 1
+    state.asked = failure.LEARNER
+    weights = state.weights[state.behaviour]
     affordance.learn(
         mind.learner,
         state.features,
-        state.weights[state.behaviour],
+        weights,
         state.hidden,
         target,
         mind.learning_rate,
@@ -74,6 +79,8 @@ def train(state, mind, target, functions):
         mind.biases,
         functions.learner,
     )
+    if mind.learner == affordance.CUSTOM_LEARNER and not drives.all_finite(weights):
+        failure.fail(state, failure.LEARNER, 0.0, 0.0)
 
 
 @compiled

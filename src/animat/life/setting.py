@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animat.life.birth import born, clear_biases, draw_weights, place
-from animat.mind.functions import Functions
+from animat.mind.functions import BUILT_IN, Functions
 from animat.mind.mind import Mind
 from animat.mind.parameters import parameters
+from animat.mind.trial import Surroundings, try_functions
 from animat.robot.khepera import Khepera
 from animat.settings import SettingsError
 from animat.world.raster import Raster
@@ -67,24 +68,29 @@ class Setting(NamedTuple):
 
 
 def bring_together(
-    mind: Mind, world: World, robot: Khepera | None = None, functions: Functions | None = None
+    mind: Mind,
+    world: World,
+    robot: Khepera | None = None,
+    functions: Functions | None = None,
+    *,
+    check_functions: bool = False,
 ) -> Setting:
     """Return the setting of a mind in a robot in a world.
 
-    `functions` are the user's own of the mind, where they are compiled already. Raises LifeError.
+    `functions` are the custom functions of the mind, where they are compiled already. They are
+    tried; with `check_functions` they also check every index they use in every step. Raises
+    LifeError, or FunctionError for a custom function that will not do.
     """
     robot = robot or Khepera()
     mind_parameters = checked_parameters(mind, world)
     horizon = robot.radius + mind.encounter_range + world.resolution
-    return Setting(
-        mind,
-        robot,
-        world,
-        mind_parameters,
-        robot.parameters(),
-        world.raster(horizon),
-        functions or mind.functions(),
-    )
+    body, raster = robot.parameters(), world.raster(horizon)
+    functions = functions or mind.functions(check=check_functions)
+    if functions != BUILT_IN:
+        hidden = mind.learning.hidden_units
+        around = Surroundings(raster.features, hidden, body.sensor_cosine, body.sensor_y)
+        try_functions(functions, mind_parameters, around)
+    return Setting(mind, robot, world, mind_parameters, body, raster, functions)
 
 
 def checked_parameters(mind: Mind, world: World) -> np.record:

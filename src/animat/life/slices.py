@@ -36,7 +36,7 @@ def live_recorded(
         metabolise(state, mind, functions)
         if not state.dead:
             decide(state, mind, robot, raster, present, functions, seed, life)
-        record_decision(row, state)
+        record_decision(row, state, robot.max_motor)
         if not state.dead:
             act(state, mind, robot, raster, present, functions, seed, life)
         record_outcome(row, state)

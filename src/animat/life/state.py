@@ -71,7 +71,7 @@ def state_dtype(
                 # what it knows
                 ("features", real, (features,)),  # of the object met, as perceived
                 ("estimates", real, (behaviours,)),  # of the object met
-                ("likelihoods", real, (behaviours,)),  # held while a behaviour is not run
+                ("likelihoods", real, (behaviours,)),  # when last chosen; not a number before
                 ("weights", real, (behaviours, weights)),
                 # this step
                 ("reward", whole),
@@ -97,6 +97,10 @@ def state_dtype(
                 ("aftermath", real, (variables,)),
                 ("drives_after", real, (drives,)),
                 ("changes_after", real, (variables,)),
+                # of custom functions: see animat.life.failure
+                ("asked", whole),  # the role that was called last
+                ("failure", whole),  # the role that ended the life
+                ("given", real, (2,)),  # what it gave
             ],
         ),
         align=True,

@@ -13,12 +13,13 @@ a selector. Every function changes `state`, the record of `animat.life.state`, i
 
 from __future__ import annotations
 
+from animat.life import failure
 from animat.life.encounter import abandon, change_mode, forget_lost, look_around
 from animat.life.outcome import finish, perish
 from animat.life.sight import bearing, distance_to
 from animat.life.state import BLOCKED, NO_SITE, REACHED, UNREACHED
 from animat.mind import behaviours, drives, homeostasis
-from animat.mind.behaviours import ACT, APPROACH, LEAVE, WANDER
+from animat.mind.behaviours import ACT, APPROACH, CUSTOM_WANDER, LEAVE, WANDER
 from animat.numerics.compiled import compiled
 from animat.numerics.streams import MOTORS, SENSORS, bits, uniforms
 from animat.numerics.streams import WANDER as WANDERING
@@ -67,11 +68,15 @@ def sense(state, robot, raster, present, seed, life):
 @compiled
 def metabolise(state, mind, functions):
     """Let the variables drift for one step and the drives follow them; end a life that must."""
-    homeostasis.metabolise(state.values, mind, functions.law)
+    state.asked = failure.LAW
+    if not homeostasis.metabolise(state.values, mind, functions.law):
+        failure.fail(state, failure.LAW, 0.0, 0.0)
     for v in range(len(state.values)):
         state.changes[v] = state.values[v] - state.previous[v]
         state.previous[v] = state.values[v]
-    drives.raise_drives(state.values, state.changes, mind, state.drives, functions.drives)
+    state.asked = failure.DRIVES
+    if not drives.raise_drives(state.values, state.changes, mind, state.drives, functions.drives):
+        failure.fail(state, failure.DRIVES, 0.0, 0.0)
     total = 0.0
     for drive in state.drives:
         total += drive
@@ -125,6 +130,7 @@ def search(state, mind, robot, functions, seed, life):
     luck_a = luck_b = 0.0
     if behaviours.needs_luck(mind.wander, state.memory):
         luck_a, luck_b, _, _ = uniforms(seed, life, WANDERING, state.step)
+    state.asked = failure.WANDER
     left, right = behaviours.wander(
         mind.wander,
         state.readings,
@@ -137,10 +143,17 @@ def search(state, mind, robot, functions, seed, life):
         mind.turn_speed,
         functions.wander,
     )
+    if mind.wander == CUSTOM_WANDER and not can_be_driven(left, right, robot.max_motor):
+        failure.fail(state, failure.WANDER, left, right)
+        left = right = 0
     state.left = int(left)
     state.right = int(right)
-    # A command that is no number becomes some motor command; the sum shows that it was none.
-    state.drive_sum += 0.0 * (left + right)
+
+
+@compiled
+def can_be_driven(left, right, limit):
+    """Tell whether two commands, cut to whole numbers, are within the limit of the motors."""
+    return abs(left) < limit + 1.0 and abs(right) < limit + 1.0
 
 
 @compiled

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
 
 CAUSES = {METABOLISM: "metabolism", SUCCESS: "success", FAILURE: "failure"}
 SIDES = ("low", "high")
+
+NAMES = ("world", "agent", "seed", "life")
+"""The columns that tell which life a row is of; a life that failed has them too."""
 
 
 def death_of(state: np.record, mind: Mind) -> str | None:
@@ -62,6 +66,23 @@ def summary(
         columns[f"acts_{behaviour}"] = pa.array(states["acts_by_behaviour"][:, b])
         columns[f"successes_{behaviour}"] = pa.array(states["successes_by_behaviour"][:, b])
     return columns
+
+
+def without_failed(
+    columns: Mapping[str, pa.Array], errors: Sequence[str | None], names: Sequence[str]
+) -> dict[str, pa.Array]:
+    """Return columns of L lives with one more, `error`, of `errors` [L].
+
+    A life that failed, whose error is not None, keeps only what is in the columns of these names.
+    """
+    count = len(errors)
+    if not any(errors):
+        return {**columns, "error": pa.nulls(count, pa.string())}
+    there = pa.array(np.arange(count), mask=np.array([bool(each) for each in errors], bool))
+    masked = {
+        name: values if name in names else values.take(there) for name, values in columns.items()
+    }
+    return {**masked, "error": pa.array(errors, pa.string())}
 
 
 def _constant(text: str, count: int) -> pa.Array:

@@ -1,7 +1,8 @@
 """The trace of a life: what was sensed, felt, done and had of it, a row for each recorded step.
 
 A row holds the pose the robot sensed in, what it sensed and felt there, what it set its motors
-to, and what came of it (reward, event) in that step; the next row's pose is where that led.
+to, and what came of it (reward, event) in that step; the next row's pose is where that led. The
+row of a death holds the values of the variables that it was a death of.
 """
 
 from __future__ import annotations
@@ -28,14 +29,17 @@ def row_dtype(state: np.dtype) -> np.dtype:
 
 
 @compiled
-def record_decision(row, state):
-    """Write down what led to the motor commands, before they are followed."""
+def record_decision(row, state, limit):
+    """Write down what led to the motor commands, before they are followed.
+
+    The motors take no command beyond +-`limit`: written down is what they are driven by.
+    """
     row.step = state.step
     row.x = state.x
     row.y = state.y
     row.heading = state.heading
-    row.left = state.left
-    row.right = state.right
+    row.left = min(max(state.left, -limit), limit)
+    row.right = min(max(state.right, -limit), limit)
     row.mode = state.mode
     row.behaviour = state.behaviour
     row.site = state.site
@@ -52,9 +56,12 @@ def record_decision(row, state):
 
 @compiled
 def record_outcome(row, state):
-    """Write down what came of the step."""
+    """Write down what came of the step; in a death, with the values that an act left."""
     row.reward = state.reward
     row.event = state.event
+    if state.dead:
+        for v in range(len(row.values)):
+            row.values[v] = state.values[v]
 
 
 def table(rows: NDArray[np.void], mind: Mind, world: World) -> pa.Table:
@@ -80,7 +87,8 @@ def table(rows: NDArray[np.void], mind: Mind, world: World) -> pa.Table:
     )
     columns["site"] = rows["site"]
     for b, name in enumerate(behaviours):
-        columns[f"likelihood_{name}"] = rows["likelihoods"][:, b]
+        said = rows["likelihoods"][:, b]
+        columns[f"likelihood_{name}"] = pa.array(said, mask=np.isnan(said))
     columns["reward"] = rows["reward"]
     columns["event"] = _event_names(rows["event"])
     return pa.table(columns)

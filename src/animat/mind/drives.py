@@ -11,6 +11,8 @@ A drive function has the signature `drives(values, changes, set_points, senses, 
 
 from __future__ import annotations
 
+import math
+
 from animat.numerics.compiled import compiled
 
 SIGNED, RECTIFIED, ABSOLUTE, CUSTOM_DRIVES = range(4)
@@ -54,6 +56,7 @@ def raise_drives(values, changes, mind, out, custom):
     """Fill `out` [D] with the drives, by the mind's drive function.
 
     `changes` [V] is what the values have changed by since the last step: dV/dt times one step.
+    Return whether all that a custom function left in `out` is finite.
     """
     if mind.error == SIGNED:
         signed(values, changes, mind.set_point, mind.sense, mind.a, mind.b, out)
@@ -63,6 +66,17 @@ def raise_drives(values, changes, mind, out, custom):
         absolute(values, changes, mind.set_point, mind.sense, mind.a, mind.b, out)
     else:
         custom(values, changes, mind.set_point, mind.sense, mind.a, mind.b, out)
+        return all_finite(out)
+    return True
+
+
+@compiled
+def all_finite(values):
+    """Tell whether all of some numbers are finite."""
+    for value in values:
+        if not math.isfinite(value):
+            return False
+    return True
 
 
 @compiled

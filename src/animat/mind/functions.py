@@ -7,16 +7,20 @@ fields that are not the user's hold a function that is never called.
 
 from __future__ import annotations
 
-import importlib.util
 import inspect
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 from numba import types
 from numba.core.dispatcher import Dispatcher
 
+from animat.mind.loading import load
+from animat.numerics.checked import SelfCallError, checked
 from animat.numerics.compiled import compiled
+from animat.numerics.snapshot import share_identity, snapshot
 from animat.settings import SettingsError
 
 SIGNATURES = {
@@ -33,20 +37,26 @@ SIGNATURES = {
 REAL, WHOLE = types.float64, types.int64
 REALS, WHOLES = types.Array(REAL, 1, "C"), types.Array(WHOLE, 1, "C")
 TABLE = types.Array(REAL, 2, "C")
+GIVEN, GIVEN_WHOLES, GIVEN_TABLE = (
+    types.Array(one.dtype, one.ndim, one.layout, readonly=True) for one in (REALS, WHOLES, TABLE)
+)
 
 ARGUMENTS = {
     "law": (REAL,) * 5,
-    "drives": (REALS, REALS, REALS, REALS, TABLE, TABLE, REALS),
-    "selector": (REALS, REALS, WHOLES, REAL),
-    "estimator": (REALS, REALS, REALS),
-    "learner": (REALS, REALS, REALS, REAL, REAL, WHOLE, types.boolean),
-    "wander": (WHOLES, REALS, REALS, REALS, REAL, REAL, WHOLE, WHOLE),
+    "drives": (GIVEN, GIVEN, GIVEN, GIVEN, GIVEN_TABLE, GIVEN_TABLE, REALS),
+    "selector": (GIVEN, GIVEN, GIVEN_WHOLES, REAL),
+    "estimator": (GIVEN, GIVEN, REALS),
+    "learner": (GIVEN, REALS, REALS, REAL, REAL, WHOLE, types.boolean),
+    "wander": (GIVEN_WHOLES, GIVEN, GIVEN, REALS, REAL, REAL, WHOLE, WHOLE),
 }
-"""What the step hands to each replaceable function."""
-
+"""What each replaceable function is given. Only `out`, `weights`, `hidden` and `memory` can be
+written to; the other arrays are shared by lives on several threads."""
 
 ALLOCATION = ("NRT required", "Only accept returning of array")
 """What the compiler says of a function that needs memory of its own."""
+
+
+_TWINS: WeakKeyDictionary[Any, Any] = WeakKeyDictionary()
 
 
 class FunctionError(SettingsError):
@@ -103,21 +113,26 @@ BUILT_IN = Functions(
 )
 
 
-def resolve(role: str, function: str | Callable[..., Any]) -> Any:
-    """Return the compiled form of a user's function for a role of `SIGNATURES`.
+def resolve(role: str, function: str | Callable[..., Any], *, check: bool = False) -> Any:
+    """Return the compiled form of a custom function for a role of `SIGNATURES`.
 
-    `function` is a Python function, or a text "FILE.py:NAME". It is compiled alone first, because
-    the compiler says far less clearly what is wrong with it in the midst of a step. Raises
-    FunctionError.
+    `function` is a Python function, or a text "FILE.py:NAME". What it computes by counts as it is
+    now, not as it was when a mind was made; see `snapshot`. It is compiled alone first, because the
+    compiler says far less clearly what is wrong with it in the midst of a step. With `check`, every
+    index it uses is checked whenever it is called. Raises FunctionError.
     """
     own: Any = _load(role, function) if isinstance(function, str) else function
-    if isinstance(own, Dispatcher):
-        own = own.py_func
-    _check_signature(role, own)
-    dispatcher = compiled(own)
+    _check_signature(role, own.py_func if isinstance(own, Dispatcher) else own)
+    dispatcher = snapshot(own)
     if isinstance(dispatcher, Dispatcher):
-        _check_compiles(role, dispatcher)
+        twin = _check_compiles(role, dispatcher)
+        return twin if check else dispatcher
     return dispatcher
+
+
+def checked_twin(function: Any) -> Any:
+    """Return a resolved function with every index checked."""
+    return _TWINS.get(function, function)
 
 
 def _load(role: str, address: str) -> Callable[..., Any]:
@@ -128,12 +143,10 @@ def _load(role: str, address: str) -> Callable[..., Any]:
             f'{role} = "{address}": no such built-in and no such file;'
             f" give FILE.py:NAME of a function {SIGNATURES[role]}"
         )
-    spec = importlib.util.spec_from_file_location(path.stem, path.resolve())
-    if spec is None or spec.loader is None:
+    if path.suffix != ".py":
         raise FunctionError(f'{role} = "{address}": {path} is not a Python file')
-    module = importlib.util.module_from_spec(spec)
     try:
-        spec.loader.exec_module(module)
+        module = load(path)
     except (Exception, SystemExit) as error:
         raise FunctionError(f"{role}: {path} does not run: {_one_line(error)}") from error
     found = getattr(module, name, None)
@@ -158,17 +171,68 @@ def _check_signature(role: str, function: Callable[..., Any]) -> None:
         )
 
 
-def _check_compiles(role: str, dispatcher: Any) -> None:
+def _check_compiles(role: str, dispatcher: Any) -> Any:
+    """Return the twin of a custom function that checks every index, compiled for its role."""
     name = dispatcher.__name__
+    twins: dict[Any, Any] = {}
     try:
-        dispatcher.compile(ARGUMENTS[role])
+        twin: Any = checked(dispatcher, twins)
+        twin.compile(ARGUMENTS[role])
     except Exception as error:
-        raise FunctionError(
-            f"{role}: {name} does not compile: {_why(error)}; wanted {SIGNATURES[role]}"
-        ) from error
-    result = dispatcher.overloads[ARGUMENTS[role]].signature.return_type
+        why = f"does not compile: {_why(error)}"
+        if "readonly" in str(error) and _compiles_if_all_may_be_written(role, dispatcher):
+            why = f"changes what it is given{_line(error)}; {_may_write(role)}"
+        raise FunctionError(f"{role}: {name} {why}; wanted {SIGNATURES[role]}") from error
+    result = twin.overloads[ARGUMENTS[role]].signature.return_type
     if not _suits(role, result):
         raise FunctionError(f"{role}: {name} returns {result}; wanted {SIGNATURES[role]}")
+    if any(_uses_iterator(each) for each in twins.values()):
+        raise FunctionError(
+            f"{role}: {name} uses flat or nditer, which could change what it is given; use indices"
+        )
+    _TWINS[dispatcher] = _TWINS[twin] = twin
+    share_identity(twin, dispatcher)
+    return twin
+
+
+def _compiles_if_all_may_be_written(role: str, dispatcher: Any) -> bool:
+    writable = tuple(
+        each.copy(readonly=False) if isinstance(each, types.Array) else each
+        for each in ARGUMENTS[role]
+    )
+    try:
+        checked(dispatcher, {}).compile(writable)
+    except Exception:
+        return False
+    return True
+
+
+def _uses_iterator(dispatcher: Any) -> bool:
+    """Tell whether a compiled function walks an array by what ignores that it is read only."""
+    walks = (types.NumpyFlatType, types.NumpyNdIterType)
+    return any(
+        isinstance(each, walks)
+        for overload in dispatcher.overloads.values()
+        for each in overload.type_annotation.typemap.values()
+    )
+
+
+def _may_write(role: str) -> str:
+    """Return what a function of a role may write to, in words."""
+    signature = SIGNATURES[role]
+    names = signature[signature.index("(") + 1 : signature.index(")")].split(", ")
+    writable = [
+        name
+        for name, each in zip(names, ARGUMENTS[role], strict=True)
+        if isinstance(each, types.Array) and each.mutable
+    ]
+    return f"it may write to {' and '.join(writable) or 'nothing'}"
+
+
+def _line(error: Exception) -> str:
+    """Return the line of the source that the compiler names last, in words."""
+    lines = re.findall(r'File "[^"]*", line (\d+)', str(error))
+    return f" in line {lines[-1]}" if lines else ""
 
 
 def _suits(role: str, result: types.Type) -> bool:
@@ -189,10 +253,12 @@ def _is_number(result: types.Type) -> bool:
 
 def _why(error: Exception) -> str:
     """Return what the compiler has against a function, on one line."""
+    if isinstance(error, SelfCallError):
+        return f"{error} calls itself, for which a step has no room"
     if any(sign in str(error) for sign in ALLOCATION):
         return "it makes a new array, list or other object, for which a step has no room"
     lines = [line.strip() for line in str(error).splitlines()]
-    telling = [line for line in lines if line and not line.startswith("Failed in nopython mode")]
+    telling = [line for line in lines if line and not line.startswith("Failed in ")]
     return " ".join(telling[:1]) or type(error).__name__
 
 

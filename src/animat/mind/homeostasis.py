@@ -10,6 +10,8 @@ Equation 1 of the paper is printed as growth and equation 2 as its decay; both a
 
 from __future__ import annotations
 
+import math
+
 from animat.numerics.compiled import compiled
 
 DECAY, RELAX, GROWTH, LINEAR_FALL, LINEAR_RISE, CUSTOM_LAW = range(6)
@@ -66,7 +68,11 @@ def obey(law, value, low, high, rate, factor, custom):
 
 @compiled
 def metabolise(values, mind, custom):
-    """Let every variable [V] follow its law for one step, in place."""
+    """Let every variable [V] follow its law for one step, in place.
+
+    Return whether all that a custom law returned is finite.
+    """
+    finite = True
     for v in range(len(values)):
         value = obey(
             mind.law[v],
@@ -77,7 +83,10 @@ def metabolise(values, mind, custom):
             mind.factor[v],
             custom,
         )
+        if mind.law[v] == CUSTOM_LAW and not math.isfinite(value):
+            finite = False
         values[v] = min(max(value, mind.drift_floor[v]), mind.drift_ceiling[v])
+    return finite
 
 
 @compiled

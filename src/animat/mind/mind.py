@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field, ValidationError, field_validator, model_
 
 from animat.mind.affordance import weight_count
 from animat.mind.agents import AGENTS, Agent
+from animat.mind.changes import Complete, changing, removing
 from animat.mind.functions import BUILT_IN, Functions, resolve
 from animat.mind.networks import Networks
 from animat.mind.parameters import ESTIMATORS, LAWS, LEARNERS, SELECTORS, WANDERERS
@@ -60,6 +61,24 @@ class Behaviour(Settings):
     failure: Effects | None = None
 
 
+PAPER_DRIVES = {
+    "hunger": Drive(a={"nutrition": 1.0}),
+    "fatigue": Drive(a={"stamina": 1.0}),
+    "curiosity": Drive(a={"restlessness": 1.0}),
+}
+PAPER_BEHAVIOURS = {
+    "eat": Behaviour(serves="hunger", needs="grasp"),
+    "shelter": Behaviour(serves="fatigue", needs="shelter"),
+    "interact": Behaviour(serves="curiosity", needs="interact"),
+}
+"""The drives and behaviours that every mind has, unless they are changed or removed."""
+
+
+_check_variables, _write_variables = removing(PHYSIOLOGIES["excess"], VariableChange)
+_check_drives, _write_drives = changing(PAPER_DRIVES, Drive)
+_check_behaviours, _write_behaviours = changing(PAPER_BEHAVIOURS, Behaviour)
+
+
 class Learning(Settings):
     """The affordance networks and their learning rule."""
 
@@ -85,25 +104,20 @@ class Learning(Settings):
 class Mind(Settings):
     """A mind: what it needs, what urges it, how it chooses, what it knows and how it learns.
 
-    The defaults are those of the paper; `networks` are those a robot has learnt, needed by the
-    agent AF. See docs/settings.md for every setting and the readings it stands for.
+    The defaults are those of the paper. What `variables`, `drives` and `behaviours` name is added
+    to those of the paper or takes the place of one; None or False removes one. `networks` are those
+    a robot has learnt, needed by the agent AF. docs/settings.md has every setting.
     """
 
     model_config = ConfigDict(arbitrary_types_allowed=True)
 
     agent: Literal["BLIND", "AF", "LEARNING", "ORACLE", "RANDOM"] = "BLIND"
     physiology: Literal["excess", "decay", "relax", "linear"] = "excess"
-    variables: dict[str, VariableChange] = {}
-    drives: dict[str, Drive] = {
-        "hunger": Drive(a={"nutrition": 1.0}),
-        "fatigue": Drive(a={"stamina": 1.0}),
-        "curiosity": Drive(a={"restlessness": 1.0}),
-    }
-    behaviours: dict[str, Behaviour] = {
-        "eat": Behaviour(serves="hunger", needs="grasp"),
-        "shelter": Behaviour(serves="fatigue", needs="shelter"),
-        "interact": Behaviour(serves="curiosity", needs="interact"),
-    }
+    variables: Annotated[dict[str, VariableChange], _check_variables, _write_variables] = {}
+    drives: Annotated[dict[str, Drive], _check_drives, _write_drives] = Complete(PAPER_DRIVES)
+    behaviours: Annotated[dict[str, Behaviour], _check_behaviours, _write_behaviours] = Complete(
+        PAPER_BEHAVIOURS
+    )
     lethal_margin: Annotated[float, Field(ge=0.0, lt=0.5)] | None = None
     overflow: Literal["clamp", "lethal"] = "clamp"
     failed_act: Literal["lethal", "clamp"] = "lethal"
@@ -188,14 +202,16 @@ class Mind(Settings):
 
         Raises ValueError, with a line for each mistake, where a changed variable is impossible.
         """
-        resolved = dict(PHYSIOLOGIES[self.physiology])
+        changes = {name: each for name, each in self.variables.items() if each is not False}
+        removed = self.variables.keys() - changes.keys()
+        resolved = {n: v for n, v in PHYSIOLOGIES[self.physiology].items() if n not in removed}
         problems: list[str] = []
         if self.lethal_margin is not None:
-            changes = {"lethal_margin": self.lethal_margin}
+            margin = {"lethal_margin": self.lethal_margin}
             for name, variable in resolved.items():
                 if variable.lethal_margin > 0.0:
-                    resolved[name] = Variable(**{**dict(variable), **changes})
-        for name, change in self.variables.items():
+                    resolved[name] = Variable(**{**dict(variable), **margin})
+        for name, change in changes.items():
             settings = dict(resolved[name]) if name in resolved else {}
             if change.law is not None and change.kind is None:
                 settings.pop("kind", None)
@@ -231,10 +247,13 @@ class Mind(Settings):
                 own[role] = value
         return own
 
-    def functions(self) -> Functions:
-        """Return the user's own functions, compiled. Raises FunctionError."""
+    def functions(self, *, check: bool = False) -> Functions:
+        """Return the custom functions, compiled. With `check`, they check every index they use.
+
+        Raises FunctionError.
+        """
         own = self.own_functions()
-        return BUILT_IN._replace(**{role: resolve(role, own[role]) for role in own})
+        return BUILT_IN._replace(**{role: resolve(role, own[role], check=check) for role in own})
 
     def weight_count(self, feature_count: int) -> int:
         """Return the number of weights of one of its networks."""

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from animat.mind.affordance import feed_forward, weight_count
+from animat.mind.networks_file import read_networks_file, write_networks_file
 from animat.numerics.compiled import kernel
 from animat.settings import nearest
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +76,57 @@ class Networks:
         outputs = np.zeros(len(self.behaviours))
         ask(inputs, self.weights, np.zeros(self.hidden), outputs)
         return dict(zip(self.behaviours, outputs.tolist(), strict=True))
+
+    @classmethod
+    def load(cls, path: str | Path) -> Networks:
+        """Return the networks of a file that `save` wrote, to the last bit.
+
+        Raises SettingsError, with a line for everything that is wrong with the file.
+        """
+        file = read_networks_file(Path(path))
+        return cls(tuple(file.weights), file.features, file.hidden, file.matrix())
+
+    def save(self, path: str | Path) -> None:
+        """Write the networks as a TOML file, replacing what was there. Raises SettingsError."""
+        write_networks_file(
+            Path(path), self.behaviours, self.features, self.hidden, np.asarray(self.weights)
+        )
+
+    def figure(self, objects: Mapping[str, Mapping[str, float]] | None = None) -> Figure:
+        """Draw what each network says, and its weights.
+
+        Networks of two features are drawn as a surface over both, others as a bar for each object.
+        `objects` are the features of object types by their names, such as
+        `{kind.name: kind.features for kind in world.types}`. Raises ValueError where these are not
+        the features the networks know.
+        """
+        from animat.report.figures.networks import SURFACE, networks_figure
+
+        named = {name: dict(features) for name, features in (objects or {}).items()}
+        said = [list(self.likelihoods(features).values()) for features in named.values()]
+        places = np.array([[each[f] for f in self.features] for each in named.values()])
+        return networks_figure(
+            self.behaviours,
+            self.features,
+            self._layers(),
+            self._surface(SURFACE) if len(self.features) == 2 else None,
+            dict(zip(named, zip(places, said, strict=True), strict=True)),
+        )
+
+    def _surface(self, along: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the likelihoods [B, N, N] at N values of the second and of the first feature."""
+        said = np.zeros((len(self.behaviours), len(along), len(along)))
+        outputs, hidden = np.zeros(len(self.behaviours)), np.zeros(self.hidden)
+        for row, second in enumerate(along):
+            for column, first in enumerate(along):
+                ask(np.array([first, second]), self.weights, hidden, outputs)
+                said[:, row, column] = outputs
+        return said
+
+    def _layers(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        """Return of each network the weights, biases first: hidden [H, 1 + F], output [1 + H]."""
+        cut = self.hidden * (len(self.features) + 1)
+        return [(each[:cut].reshape(self.hidden, -1), each[cut:]) for each in self.weights]
 
 
 @kernel

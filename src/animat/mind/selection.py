@@ -3,7 +3,7 @@
 A selector has the signature `select(drives, likelihoods, serves, luck) -> behaviour`: `drives` [D];
 `likelihoods` [B], what the mind believes of the object met; `serves` [B], the drive each behaviour
 serves; `luck`, a uniform in [0, 1) of this step. It returns the index of a behaviour, or -1 for
-none.
+none. Any other number fails the life.
 """
 
 from __future__ import annotations

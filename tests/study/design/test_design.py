@@ -76,9 +76,6 @@ def nested(changes: dict[str, Any]) -> dict[str, Any]:
         holder[last] = value
     if "drives" in data.get("mind", {}):
         data["mind"]["drives"]["hunger"] = {"a": data["mind"]["drives"]["hunger"]["a"]}
-        data["mind"]["drives"] |= {
-            "fatigue": {"a": {"stamina": 1.0}}, "curiosity": {"a": {"restlessness": 1.0}}
-        }  # fmt: skip
     return data
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from animat.life import batch as module
+from animat.life.batch import Batch
 from animat.life.life import TraceChoice, live
 from animat.life.setting import bring_together
 from animat.mind.mind import Mind
-from animat.study.living import living
-from animat.study.living.living import Company
 from animat.study.living.traces import Traced
 from animat.world.world import World
 
@@ -21,14 +21,14 @@ LIVES = np.arange(4, 9, dtype=np.uint64)
 @pytest.mark.parametrize("settings", [{}, {"death": False}])
 def test_they_are_those_of_single_lives(what, every, settings, monkeypatch):
     """However often lives were looked at, whether or not they died before the cap."""
-    monkeypatch.setattr(living, "LOOK_EVERY", every)
+    monkeypatch.setattr(module, "LOOK_EVERY", every)
     mind, steps = Mind(**settings), 2_500
     recording = TraceChoice.parse(what)
     assert recording is not None
-    company = Company(bring_together(mind, World.abundant()), 3, steps, back=recording.last or 0)
-    watched = company.live(LIVES)
-    watched.errors[2] = "it failed"
-    traced = Traced(7, company, watched, LIVES, None, 4)
+    batch = Batch(bring_together(mind, World.abundant()), 3, steps, back=recording.last or 0)
+    result = batch.run(LIVES)
+    result.errors[2] = "it failed"
+    traced = Traced(7, batch, result, LIVES, None, 4)
     schema = traced.schema()
     rows = [row for table in traced.tables(recording, schema) for row in table.to_pylist()]
     alone = []
@@ -37,12 +37,12 @@ def test_they_are_those_of_single_lives(what, every, settings, monkeypatch):
         assert trace is not None
         alone += [{"case": 7, "life": life, **row} for row in trace.to_pylist()]
     assert rows == alone
-    assert watched.states["dead"].any() == (not settings)
+    assert result.states["dead"].any() == (not settings)
 
 
 def test_columns_that_a_mind_has_not_are_null():
-    company = Company(bring_together(Mind(), World.abundant()), 3, 50)
-    traced = Traced(0, company, company.live(LIVES), LIVES, None, 1)
+    batch = Batch(bring_together(Mind(), World.abundant()), 3, 50)
+    traced = Traced(0, batch, batch.run(LIVES), LIVES, None, 1)
     wanted = traced.schema()
     wider = wanted.append(wanted.field("hunger").with_name("thirst"))
     (table,) = traced.tables(TraceChoice(), wider)

@@ -4,9 +4,9 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from animat.life.batch import CURVE_EVERY, EPISODES
 from animat.life.life import live
 from animat.mind.mind import Mind
-from animat.study.living.living import CURVE_EVERY, EPISODES
 from animat.study.reproduction import experiment1
 from animat.world.objects import TABLE_1
 from animat.world.world import World

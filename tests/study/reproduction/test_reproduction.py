@@ -7,7 +7,7 @@ import pytest
 from animat.life.life import live
 from animat.life.lives import live_many
 from animat.life.setting import LifeError
-from animat.mind.mind import Behaviour, Drive, Mind
+from animat.mind.mind import Mind
 from animat.report.survival import summarise
 from animat.robot.khepera import Khepera
 from animat.settings import SettingsError
@@ -220,8 +220,8 @@ def test_both_experiments_are_the_studies_that_come_with_animat():
 
 
 ONE_DRIVE = Mind(
-    drives={"hunger": Drive(a={"nutrition": 1.0})},
-    behaviours={"eat": Behaviour(serves="hunger", needs="grasp")},
+    drives={"fatigue": None, "curiosity": None},
+    behaviours={"shelter": None, "interact": None},
 )
 
 

@@ -79,7 +79,7 @@ def test_a_file_that_has_changed_is_refused_and_its_copy_kept(faults, tmp_path, 
     (line,) = differences_from(directory, faults.plan(text + "# read again\n"))
     assert line == f"{own} has changed since; as it was it is in {directory / 'inputs'}"
     assert verify(Results(directory), telling).problems == [line]
-    (copy,) = (directory / "inputs").iterdir()
+    copy = directory / "inputs" / "outside" / own.relative_to("/")
     assert copy.read_text() == lost
     own.unlink()
     gone = f"{own} is not there any more; as it was it is in {directory / 'inputs'}"

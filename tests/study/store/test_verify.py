@@ -196,7 +196,7 @@ def test_a_copy_of_a_file_that_is_none_any_more_is_found(faults, tmp_path, lost)
     plan = faults.plan(f'name = "own"\nlives = 1\nsteps = 5\n[mind]\nwander = "{own}:walk"\n')
     faults.go_on(plan, tmp_path / "results")
     assert looked(tmp_path / "results").problems == []
-    (copy,) = (tmp_path / "results" / "inputs").iterdir()
+    copy = tmp_path / "results" / "inputs" / "outside" / own.relative_to("/")
     copy.write_text("")
     assert looked(tmp_path / "results").problems == [
         f"{copy}: is no copy of {own} any more; animat run with the same study writes it anew"

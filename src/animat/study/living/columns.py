@@ -17,14 +17,15 @@ from numpy.typing import NDArray
 
 from animat.life.likelihoods import likelihoods
 from animat.life.setting import Setting
-from animat.life.summary import summary
+from animat.life.summary import NAMES as LIFE_NAMES
+from animat.life.summary import summary, without_failed
 from animat.mind.mind import Mind
 from animat.study.living.identity import networks_matter
 from animat.study.living.numbering import Kind
 from animat.study.living.plan import Plan, world_of
 from animat.world.world import World
 
-NAMES = ("case", "world", "agent", "seed", "life", "identity", "robot")
+NAMES = (*LIFE_NAMES, "case", "identity", "robot")
 """The columns that tell which life a row is of; a life that failed has them too."""
 
 
@@ -69,19 +70,11 @@ def rows(
 
     A column that is missing is null.
     """
-    count = len(errors)
-    there = None
-    if any(errors):
-        there = pa.array(np.arange(count), mask=np.array([bool(each) for each in errors], bool))
-        columns = {**columns, "error": pa.array(errors, pa.string())}
-    filled = []
-    for column in wanted:
-        values = columns.get(column.name)
-        if values is None:
-            values = pa.nulls(count, column.type)
-        elif there is not None and column.name not in {*NAMES, "error"}:
-            values = values.take(there)
-        filled.append(values)
+    told = without_failed(columns, errors, NAMES)
+    filled = [
+        told[each.name] if each.name in told else pa.nulls(len(errors), each.type)
+        for each in wanted
+    ]
     return pa.table(filled, schema=wanted)
 
 
@@ -135,7 +128,7 @@ def _schema_of(plan: Plan, kind: Kind, place: int) -> pa.Schema:
 def _likelihood_columns(setting: Setting, states: NDArray[np.void]) -> dict[str, pa.Array]:
     said = likelihoods(setting, states)
     return {
-        f"likelihood_{behaviour}_{kind.name}": pa.array(said[:, b, t])
+        f"likelihood_{behaviour}_{kind.name}": pa.array(said[:, b, t], from_pandas=True)
         for b, behaviour in enumerate(setting.mind.behaviours)
         for t, kind in enumerate(setting.world.types)
     }

@@ -17,6 +17,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from animat.life.batch import EPISODES, Batch, BatchResult
 from animat.life.engine import ENGINE
 from animat.life.life import TraceChoice
 from animat.study.living.columns import (
@@ -27,7 +28,6 @@ from animat.study.living.columns import (
     schema,
     teacher_columns,
 )
-from animat.study.living.living import EPISODES, Company, Watched
 from animat.study.living.numbering import Kind, Part, Piece
 from animat.study.living.plan import Plan, plan_of
 from animat.study.living.seal import sealed
@@ -50,23 +50,29 @@ class Lived(NamedTuple):
     """Lives of a piece of a part: what they are, how they ended."""
 
     piece: Piece
-    company: Company
+    batch: Batch
     lives: NDArray[np.uint64]
     weights: NDArray[np.float64] | None
-    watched: Watched
+    result: BatchResult
 
 
-def live_part(text: str, part: Part, networks: Networks, stop: Event | None = None) -> Made:
+def live_part(
+    text: str,
+    part: Part,
+    networks: Networks,
+    stop: Event | None = None,
+    check_functions: bool = False,
+) -> Made:
     """Live a part of the study whose file reads `text`.
 
     `networks` has those of every class in `classes_needed`. Raises StoppedError once `stop` is
     set.
     """
-    plan = plan_of(text)
+    plan = plan_of(text, check_functions)
     lived = live_pieces(plan, part.kind, plan.pieces(part), networks, stop)
     identity = part_identity(plan, part)
-    failed = sum(one.watched.failed for one in lived)
-    steps = sum(int(one.watched.states["step"].sum()) for one in lived)
+    failed = sum(one.result.failed for one in lived)
+    steps = sum(int(one.result.states["step"].sum()) for one in lived)
     files = {}
     for path in file_names(plan, part):
         if path.startswith("curves/"):
@@ -138,9 +144,9 @@ def _teach(plan: Plan, piece: Piece, stop: Event | None) -> Lived:
     each = plan.classes[piece.place]
     curve = "learning_curve" in plan.study.measures
     setting = plan.setting_of_class(piece.place)
-    company = Company(setting, plan.study.seed, each.teacher.steps, curve, stop=stop)
+    batch = Batch(setting, plan.study.seed, each.teacher.steps, curve, stop=stop)
     robots = np.arange(piece.start, piece.stop, dtype=np.uint64)
-    return Lived(piece, company, robots, None, company.live(robots))
+    return Lived(piece, batch, robots, None, batch.run(robots))
 
 
 def _live(plan: Plan, piece: Piece, networks: Networks, stop: Event | None) -> Lived:
@@ -149,31 +155,31 @@ def _live(plan: Plan, piece: Piece, networks: Networks, stop: Event | None) -> L
     curve = "learning_curve" in plan.study.measures and setting.mind.nature.learns
     choice = _choice(plan)
     back = (choice.last or 0) if choice and _recorded(plan, piece) else 0
-    company = Company(setting, case.seed, case.steps, curve, back, stop)
+    batch = Batch(setting, case.seed, case.steps, curve, back, stop)
     lives = np.arange(case.first + piece.start, case.first + piece.stop, dtype=np.uint64)
     place = plan.class_of(piece.place)
     if place is None or case.teacher is None:
-        return Lived(piece, company, lives, None, company.live(lives))
+        return Lived(piece, batch, lives, None, batch.run(lives))
     robots = lives % np.uint64(case.teacher.robots)
     weights = networks[place][robots]
-    return Lived(piece, company, lives, weights, _live_taught(company, lives, weights, robots))
+    return Lived(piece, batch, lives, weights, _live_taught(batch, lives, weights, robots))
 
 
 def _live_taught(
-    company: Company,
+    batch: Batch,
     lives: NDArray[np.uint64],
     weights: NDArray[np.float64],
     robots: NDArray[np.uint64],
-) -> Watched:
+) -> BatchResult:
     """Live lives that have the networks of robots; those of a robot that failed fail too."""
     taught = np.asarray(np.isfinite(weights).all(axis=(1, 2)))
     if taught.all():
-        return company.live(lives, weights)
-    watched = company.live(lives[taught], weights[taught])
-    states = np.zeros(len(lives), watched.states.dtype)
-    states[taught] = watched.states
-    errors = iter(watched.errors)
-    return Watched(
+        return batch.run(lives, weights)
+    result = batch.run(lives[taught], weights[taught])
+    states = np.zeros(len(lives), result.states.dtype)
+    states[taught] = result.states
+    errors = iter(result.errors)
+    return BatchResult(
         states,
         [
             next(errors) if there else f"robot {robot}, whose networks it has, failed"
@@ -183,16 +189,16 @@ def _live_taught(
 
 
 def _life_rows(plan: Plan, lived: Lived) -> pa.Table:
-    case, setting = plan.lived[lived.piece.place], lived.company.setting
-    columns = life_columns(plan, setting, case.seed, lived.lives, lived.watched.states)
+    case, setting = plan.lived[lived.piece.place], lived.batch.setting
+    columns = life_columns(plan, setting, case.seed, lived.lives, lived.result.states)
     columns["case"] = pa.array(np.full(len(lived.lives), case.number))
-    return rows(columns, lived.watched.errors, schema(plan, "lives"))
+    return rows(columns, lived.result.errors, schema(plan, "lives"))
 
 
 def _teacher_rows(plan: Plan, lived: Lived) -> pa.Table:
-    columns = teacher_columns(lived.company.setting, lived.lives, lived.watched.states)
+    columns = teacher_columns(lived.batch.setting, lived.lives, lived.result.states)
     columns["identity"] = _identities(plan, lived, len(lived.lives))
-    return rows(columns, lived.watched.errors, schema(plan, "teachers"))
+    return rows(columns, lived.result.errors, schema(plan, "teachers"))
 
 
 def _identities(plan: Plan, lived: Lived, count: int) -> pa.Array:
@@ -209,13 +215,13 @@ def _curves(plan: Plan, kind: Kind, lived: Iterable[Lived]) -> pa.Table:
     """Return what networks say of object types after each episode, of lives that learn."""
     tables = []
     for one in lived:
-        if one.watched.curve is None:
+        if one.result.curve is None:
             continue
-        whole = np.array([error is None for error in one.watched.errors], bool)
+        whole = np.array([error is None for error in one.result.errors], bool)
         index = one.lives[whole].astype(np.int64)
         name = {"lives": "life", "teachers": "robot"}[kind]
         axes = {name: index, "episode": np.arange(EPISODES + 1)}
-        table = long_table(one.company.setting, one.watched.curve[whole], axes)
+        table = long_table(one.batch.setting, one.result.curve[whole], axes)
         if kind == "lives":
             number = plan.lived[one.piece.place].number
             named = pa.field("case", pa.int64()), pa.array(np.full(table.num_rows, number))
@@ -232,8 +238,8 @@ def _traces(plan: Plan, lived: Iterable[Lived]) -> tuple[Iterator[pa.Table], pa.
     traced = [
         Traced(
             plan.lived[one.piece.place].number,
-            one.company,
-            one.watched,
+            one.batch,
+            one.result,
             one.lives,
             one.weights,
             _recorded(plan, one.piece),

@@ -11,6 +11,7 @@ import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from functools import lru_cache
+from pathlib import Path
 from threading import Lock
 from typing import Any, NamedTuple
 
@@ -19,8 +20,10 @@ import pyarrow as pa
 
 from animat.life.setting import Setting, bring_together
 from animat.mind.functions import Functions
+from animat.mind.loading import imported_files
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
+from animat.numerics.snapshot import source_files
 from animat.settings import SettingsError, validated
 from animat.study.design.design import Case, cases
 from animat.study.design.settings import Teacher, WorldChoice
@@ -57,9 +60,13 @@ class Plan:
     SettingsError where anything of the study cannot be lived.
     """
 
-    def __init__(self, study: Study) -> None:
-        """Number the cases, the robots that teach, and their parts."""
+    def __init__(self, study: Study, check_functions: bool = False) -> None:
+        """Number the cases, the robots that teach, and their parts.
+
+        With `check_functions`, custom functions check every index they use.
+        """
         self.study = study
+        self.check_functions = check_functions
         self.text = study.to_toml()
         self.cases = cases(study)
         self.inputs: set[str] = set()
@@ -184,16 +191,17 @@ class Plan:
         key = tuple(map(str, (*laws, *others, *learning)))
         with self._lock:
             if key not in self._functions:
-                self._functions[key] = mind.functions()
-                own = (each.rpartition(":")[0] for each in key if ".py:" in each)
-                self.inputs.update(own)
+                functions = mind.functions(check=self.check_functions)
+                self._functions[key] = functions
+                for role, own in mind.own_functions().items():
+                    self.inputs.update(_function_files(str(own), getattr(functions, role)))
             return self._functions[key]
 
 
 @lru_cache(maxsize=2)
-def plan_of(text: str) -> Plan:
+def plan_of(text: str, check_functions: bool = False) -> Plan:
     """Return the plan of a study given as the text of its file."""
-    return Plan(validated(tomllib.loads(text), Study))
+    return Plan(validated(tomllib.loads(text), Study), check_functions)
 
 
 def forget() -> None:
@@ -222,6 +230,22 @@ def untaught(mind: Mind, school: World) -> Networks:
     shape = len(mind.behaviours), mind.weight_count(len(school.feature_names))
     hidden = mind.learning.hidden_units
     return Networks(tuple(mind.behaviours), school.feature_names, hidden, np.zeros(shape))
+
+
+def _function_files(address: str, function: Any) -> set[str]:
+    """Return the files of a custom function: its own, and those that it imports or calls.
+
+    They are named as the study names the first, from the folder that the program runs in or from
+    the root; what lies outside that folder is always named from the root.
+    """
+    given = Path(address.rpartition(":")[0])
+    found = imported_files(given) | {Path(file) for file in source_files(function)}
+    here = Path.cwd()
+    names = {str(given)}
+    for file in found - {given.resolve()}:
+        is_near = not given.is_absolute() and file.is_relative_to(here)
+        names.add(str(file.relative_to(here) if is_near else file))
+    return names
 
 
 def _alike(values: list[Any]) -> pa.Array:

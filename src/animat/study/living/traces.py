@@ -13,58 +13,57 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from animat.life.batch import Batch, BatchResult, Snapshot, advance
 from animat.life.life import Moment, TraceChoice, lived
-from animat.life.lives import live_on
 from animat.life.trace import row_dtype, table
-from animat.study.living.living import Company, Snapshot, Watched
 
 
 @dataclass(frozen=True)
 class Traced:
     """Lives of a case whose traces are wanted.
 
-    They are the first `count` of those that were `watched`; `lives` [L] are the indices of these,
+    They are the first `count` of those in `result`; `lives` [L] are the indices of these,
     and `weights` [L, B, W] the networks they were born with, if they were given any.
     """
 
     case: int
-    company: Company
-    watched: Watched
+    batch: Batch
+    result: BatchResult
     lives: NDArray[np.uint64]
     weights: NDArray[np.float64] | None
     count: int
 
     def schema(self) -> pa.Schema:
         """Return the columns of these traces: `case`, `life`, and those of docs/tables.md."""
-        setting = self.company.setting
-        none = table(np.zeros(0, row_dtype(self.watched.states.dtype)), setting.mind, setting.world)
+        setting = self.batch.setting
+        none = table(np.zeros(0, row_dtype(self.result.states.dtype)), setting.mind, setting.world)
         names = [pa.field("case", pa.int64()), pa.field("life", pa.int64())]
         return pa.schema([*names, *none.schema])
 
     def tables(self, choice: TraceChoice, wanted: pa.Schema) -> Iterator[pa.Table]:
         """Yield the traces as rows of the `wanted` columns; a life that failed has none."""
         for row in range(self.count):
-            if self.watched.errors[row] is None:
+            if self.result.errors[row] is None:
                 for rows in self._trace(row, choice):
                     yield self._told(rows, row, wanted)
 
     def _trace(self, row: int, choice: TraceChoice) -> Iterator[NDArray[np.void]]:
-        setting, seed = self.company.setting, self.company.seed
+        setting, seed = self.batch.setting, self.batch.seed
         life = self.lives[row : row + 1]
         weights = None if self.weights is None else self.weights[row : row + 1]
-        lifespan = int(self.watched.states["step"][row])
+        lifespan = int(self.result.states["step"][row])
         if choice.last is None:
             states, present = setting.begin(seed, life, weights)
         else:
             start = max(lifespan - choice.last, 0)
-            found = _before(start, row, self.watched.earlier)
+            found = _before(start, row, self.result.earlier)
             states, present = found or setting.begin(seed, life, weights)
-            live_on(setting, seed, life, states, present, start)
+            advance(setting, seed, life, states, present, start)
             choice = TraceChoice()
         return lived(Moment(setting, seed, int(life[0]), states, present), lifespan, choice)
 
     def _told(self, rows: NDArray[np.void], row: int, wanted: pa.Schema) -> pa.Table:
-        setting = self.company.setting
+        setting = self.batch.setting
         told = table(rows, setting.mind, setting.world)
         columns = {
             "case": pa.array(np.full(len(rows), self.case)),

@@ -23,7 +23,7 @@ from animat.settings import SettingsError, validated
 from animat.study.design.settings import LifeSettings, WorldChoice
 from animat.study.design.shipped import shipped
 from animat.study.design.study import Study, read_study
-from animat.study.living.plan import plan_of
+from animat.study.living.plan import Plan, plan_of
 from animat.study.reproduction.experiment1 import Learnt, learnt
 from animat.study.running.run import run, threads
 from animat.study.store.description import MANIFEST, differences_from
@@ -131,10 +131,12 @@ def reproduce(
     directory: Path,
     tell: Telling,
     anew: bool = False,
+    check_functions: bool = False,
 ) -> Reproduction:
     """Run both experiments into `directory`, or go on with them there, and judge the claims.
 
-    With `anew`, experiments of other settings that were broken off there are thrown away.
+    With `anew`, experiments of other settings that were broken off there are thrown away. With
+    `check_functions`, custom functions check every index they use.
 
     Raises:
         SettingsError: what cannot be lived, or a directory that holds experiments of other
@@ -145,7 +147,8 @@ def reproduce(
     check(settings, seed, size)
     lived: list[Results] = []
     for study in studies(settings, seed, size):
-        lived.append(_lived(study, directory / study.name, lived, tell, anew))
+        plan = plan_of(study.to_toml(), check_functions)
+        lived.append(_lived(plan, directory / study.name, lived, tell, anew))
     robots = learnt(lived[0])
     tell("Statistics", 0, 3)
     lives = _lives(lived[1])
@@ -169,10 +172,9 @@ def reproduce(
 
 
 def _lived(
-    study: Study, directory: Path, lenders: list[Results], tell: Telling, anew: bool
+    plan: Plan, directory: Path, lenders: list[Results], tell: Telling, anew: bool
 ) -> Results:
     """Return the results of an experiment, lived into its directory as far as they lack there."""
-    plan = plan_of(study.to_toml())
     if (directory / MANIFEST).exists() and (found := differences_from(directory, plan)):
         if not anew:
             raise SettingsError(
@@ -182,7 +184,7 @@ def _lived(
         shutil.rmtree(directory)
 
     def told(task: str, done: int, total: int, note: str = "") -> None:
-        which = study.name.replace("experiment", "Experiment ")
+        which = plan.study.name.replace("experiment", "Experiment ")
         tell(f"{which}, {task[0].lower()}{task[1:]}", done, total, note)
 
     with threads() as workers:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import time
-from concurrent.futures import ThreadPoolExecutor
 from io import BytesIO
 from typing import NamedTuple
 
@@ -13,12 +12,14 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from animat.life.batch import Batch
+from animat.life.failure import FailedLifeError
 from animat.life.life import Moment, TraceChoice, lived
 from animat.life.lives import CHUNK
 from animat.life.setting import Setting, bring_together
 from animat.life.summary import summary
 from animat.life.trace import table
-from animat.study.living.living import Company
+from animat.numerics.threads import KernelThreads
 from animat.study.living.plan import Plan, world_of
 
 CASES = 6
@@ -129,10 +130,10 @@ def _measure(plan: Plan, place: int) -> Measured:
     cores = os.cpu_count() or 1
     lives = case.first + np.arange(CHUNK * cores, dtype=np.uint64)
     # The first life is not counted: it compiles what is not on disk yet.
-    Company(setting, case.seed, 1).live(lives[:1])
+    Batch(setting, case.seed, 1).run(lives[:1])
     started = time.perf_counter()
-    with ThreadPoolExecutor(cores) as threads:
-        lived = list(threads.map(Company(setting, case.seed, steps).live, np.split(lives, cores)))
+    with KernelThreads(cores) as threads:
+        lived = list(threads.map(Batch(setting, case.seed, steps).run, np.split(lives, cores)))
     seconds = time.perf_counter() - started
     states = np.concatenate([one.states for one in lived])
     errors = [error for one in lived for error in one.errors]
@@ -173,8 +174,8 @@ def _traces(plan: Plan, lifespan: Range) -> Range:
     birth = Moment(setting, case.seed, case.first, states, present)
     try:
         parts = list(lived(birth, TRACED, TraceChoice()))
-    except Exception:
-        # A function of the user's raises, of which `errors` tell; this life leaves no trace.
+    except FailedLifeError:
+        # Of that `errors` tell; this life leaves no trace.
         return Range(0.0, 0.0)
     trace = pa.concat_tables(table(part, setting.mind, setting.world) for part in parts)
     return rows * (record.lives * len(plan.lived) * _bytes_of_a_row(trace.unify_dictionaries()))

@@ -9,13 +9,14 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import contextmanager, suppress
 from functools import lru_cache, partial
 from pathlib import Path
 from threading import Event
 from typing import NamedTuple
 
+from animat.numerics.threads import KernelThreads
 from animat.progress import Telling
 from animat.study.living.numbering import KINDS, Kind, Part
 from animat.study.living.parts import Made, classes_needed, live_part
@@ -64,7 +65,7 @@ class Workers(NamedTuple):
 def threads(count: int | None = None) -> Iterator[Workers]:
     """Yield threads of this process, as many as there are cores unless told."""
     count = count or os.cpu_count() or 1
-    with ThreadPoolExecutor(count) as executor:
+    with KernelThreads(count) as executor:
         yield Workers(executor, count, Event())
 
 
@@ -150,7 +151,10 @@ class _Run:
 
     def _hand_out(self, part: Part) -> None:
         networks = {place: self.networks(place) for place in classes_needed(self.plan, part)}
-        live = partial(live_part, stop=self.workers.stop) if self.workers.stop else live_part
+        live = live_part
+        if self.workers.stop:
+            check = self.plan.check_functions
+            live = partial(live_part, stop=self.workers.stop, check_functions=check)
         future = self.workers.executor.submit(live, self.plan.text, part, networks)
         self.under_way[future] = part
 

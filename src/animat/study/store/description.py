@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import os
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any
@@ -184,17 +185,30 @@ def differences_from(directory: Path, plan: Plan) -> list[str]:
 def changed_inputs(directory: Path, manifest: dict[str, Any]) -> list[str]:
     """Return a line for every file of the user's that is not any more as it was."""
     lines = []
-    for path, copy in manifest["inputs"].items():
+    for path, content in manifest["inputs"].items():
         there = Path(path).is_file()
-        if not there or name_of_copy(Path(path)) != copy:
+        if not there or file_hash(Path(path)) != content:
             what = "has changed since" if there else "is not there any more"
             lines.append(f"{path} {what}; as it was it is in {directory / INPUTS}")
     return lines
 
 
-def name_of_copy(path: Path, name: str | None = None) -> str:
-    """Return what the copy of a file is called: by its content, and its name unless given."""
-    return f"{hashlib.sha256(path.read_bytes()).hexdigest()[:8]}-{name or path.name}"
+def file_hash(path: Path) -> str:
+    """Return the hash of what a file holds."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def place_of_copy(path: str) -> Path:
+    """Return where in a results directory the copy of a file of the user's is.
+
+    Files keep their places to one another, so that a study can be run again in `inputs/`: those
+    named from the folder that the program ran in as they are, the others below `outside/`.
+    """
+    plain = Path(os.path.normpath(path))
+    if plain.is_absolute() or plain.parts[0] == "..":
+        plain = Path(os.path.abspath(plain))  # noqa: PTH100
+        plain = Path("outside", *plain.parts[1:])
+    return Path(INPUTS) / plain
 
 
 def text_hash(text: str) -> str:
@@ -231,8 +245,10 @@ def _describe(directory: Path, plan: Plan) -> None:
     for folder in _folders(plan):
         (directory / folder).mkdir(exist_ok=True)
     sync_directory(directory)
-    for path, copy in _inputs(plan).items():
-        _see_to_it(directory / INPUTS / copy, Path(path).read_bytes())
+    for path in sorted(plan.inputs):
+        copy = directory / place_of_copy(path)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        _see_to_it(copy, Path(path).read_bytes())
     _see_to_it(directory / STUDY, plan.text.encode())
     cases = io.BytesIO()
     pq.write_table(plan.case_table(), cases)
@@ -257,8 +273,8 @@ def _folders(plan: Plan) -> list[str]:
 
 
 def _inputs(plan: Plan) -> dict[str, str]:
-    """Return the files a study draws on beside its own, each with the name of its copy."""
-    return {path: name_of_copy(Path(path)) for path in sorted(plan.inputs)}
+    """Return the files a study draws on beside its own, each with the hash of what it holds."""
+    return {path: file_hash(Path(path)) for path in sorted(plan.inputs)}
 
 
 def _see_to_it(path: Path, content: bytes) -> None:

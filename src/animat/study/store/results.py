@@ -21,6 +21,7 @@ import pyarrow.compute as pc
 import pyarrow.dataset as ds
 import pyarrow.parquet as pq
 
+from animat.life.table_files import to_pandas
 from animat.settings import SettingsError, nearest, validated
 from animat.study.design.study import Study
 from animat.study.living.numbering import KINDS, Kind, Numbering, Part
@@ -150,7 +151,7 @@ class Results:
 
     def to_pandas(self) -> pd.DataFrame:
         """Return all lives as a pandas table; needs pandas (`pip install animat[pandas]`)."""
-        return self.lives().to_pandas()
+        return to_pandas(self.lives())
 
     def teachers(self) -> pa.Table:
         """Return the robots that learnt: `identity` of their class, `robot`, weights, likelihoods.

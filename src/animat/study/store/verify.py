@@ -37,7 +37,8 @@ from animat.study.store.description import (
     OTHER_LIVES,
     WRITTEN_ANEW,
     changed_inputs,
-    name_of_copy,
+    file_hash,
+    place_of_copy,
     read_columns,
     read_text,
 )
@@ -111,9 +112,9 @@ def _wrong_descriptions(results: Results, plan: Plan) -> Iterator[str]:
             continue
         if plan.numbering[kind].total and not columns.equals(schema(plan, kind)):
             yield f"{directory / kind / COLUMNS}: has other columns than the study; {WRITTEN_ANEW}"
-    for path, copy in results.manifest["inputs"].items():
-        kept = directory / INPUTS / copy
-        if not kept.is_file() or name_of_copy(kept, Path(path).name) != copy:
+    for path, was in results.manifest["inputs"].items():
+        kept = directory / place_of_copy(path)
+        if not kept.is_file() or file_hash(kept) != was:
             yield f"{kept}: is no copy of {path} any more; {WRITTEN_ANEW}"
 
 
