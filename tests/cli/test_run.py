@@ -5,9 +5,6 @@ from __future__ import annotations
 import json
 import os
 import signal
-import subprocess
-import sys
-import time
 from contextlib import nullcontext
 from pathlib import Path
 
@@ -172,21 +169,6 @@ def heeded():
     signal.signal(signal.SIGINT, before)
 
 
-def started(tmp_path: Path, *changes: str) -> subprocess.Popen:
-    run = subprocess.Popen(
-        [sys.executable, "-m", "animat", "run", "tiny.toml", *changes],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    while not any((tmp_path / "results" / "tiny" / "teachers").glob("part-*")):
-        assert run.poll() is None
-        time.sleep(0.01)
-    return run
-
-
 @pytest.mark.usefixtures("heeded")
 def test_ctrl_c_finishes_what_is_under_way_and_says_how_to_go_on(animat, file, tmp_path):
     many = ("--set", "lives=800", "--set", "steps=60", "--threads", "1")
@@ -212,20 +194,6 @@ def test_ctrl_c_finishes_what_is_under_way_and_says_how_to_go_on(animat, file, t
     assert animat("status", "results/tiny").out.splitlines()[-1] == "not run by anybody"
     assert animat("run", "tiny.toml", *many).code == 0
     assert Results(Path("results/tiny")).progress == (2_400, 2_400)
-
-
-@pytest.mark.usefixtures("heeded")
-def test_ctrl_c_twice_stops_at_once(file, tmp_path):
-    run = started(tmp_path, "--set", "steps=1000000000", "--set", "mind.death=false")
-    run.send_signal(signal.SIGINT)
-    assert run.stderr is not None
-    while run.stderr.readline() != ASKED:
-        assert run.poll() is None
-    run.send_signal(signal.SIGINT)
-    _, err = run.communicate()
-    assert run.returncode == 130
-    assert err.endswith("animat: interrupted; nothing is half-written\n")
-    assert "Traceback" not in err
 
 
 @pytest.mark.parametrize(
