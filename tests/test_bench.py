@@ -104,6 +104,7 @@ def said_by(program: str, *options: str, folder: Path) -> dict:
     return said
 
 
+@pytest.mark.long
 def test_all_that_is_measured_is_told_with_its_targets(tmp_path):
     programs = ("speed", "threads", "startup", "parts")
     said = said_by("all.py", "--tiny", "--markdown", "--only", *programs, folder=tmp_path)
@@ -217,6 +218,7 @@ def test_rays_end_where_geometry_says(seed):
         assert of_numba == pytest.approx(free, rel=0.011, abs=0.1)
 
 
+@pytest.mark.long
 def test_simulators_are_compared_in_one_table(tmp_path):
     names = ("animat, rays", "Numba loop", "NumPy loop")
     options = ("--venv", str(tmp_path), "--tiny", "--repeat", "1", "--obstacles", "0", "30")
