@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import Field, StringConstraints, field_validator, model_validator
 
@@ -152,7 +152,6 @@ ANY = st.recursive(
 )
 
 
-@settings(max_examples=100, deadline=None)
 @given(data=st.dictionaries(st.sampled_from([*Robot.model_fields, "nome", "a b"]), ANY, max_size=4))
 def test_whatever_is_wrong_is_told_without_pydantics_words(data):
     try:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import Field, model_validator
 
@@ -90,7 +90,6 @@ def test_a_good_file_is_read_whole(tmp_path):
     assert read(tmp_path, b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode()) == expected
 
 
-@settings(deadline=None)
 @given(value=st.floats(allow_nan=False, allow_infinity=False))
 def test_numbers_keep_every_bit(tmp_path_factory, value):
     class Number(Settings):
@@ -277,7 +276,6 @@ def places(data: object, here: tuple = ()) -> list[tuple]:
     return found
 
 
-@settings(max_examples=100, deadline=None)
 @given(data=st.data())
 def test_a_changed_value_is_either_read_or_named(tmp_path_factory, data):
     """The key of a refusal is where the value was put, above it, or within it."""
@@ -300,7 +298,6 @@ def test_a_changed_value_is_either_read_or_named(tmp_path_factory, data):
             assert "Input should" not in line
 
 
-@settings(max_examples=100, deadline=None)
 @given(data=st.data())
 def test_a_misspelt_key_is_never_ignored(tmp_path_factory, data):
     content = tomllib.loads(GOOD)
@@ -321,7 +318,6 @@ def test_a_misspelt_key_is_never_ignored(tmp_path_factory, data):
         assert f'unknown key; did you mean "{place[-1]}"?' in "\n".join(lines)
 
 
-@settings(max_examples=150, deadline=None)
 @given(
     content=st.binary(max_size=200)
     | st.text(max_size=200).map(lambda t: t.encode("utf-8", "replace"))

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.mind.affordance import feed_forward, weight_count
@@ -16,7 +16,6 @@ def networks(seed=0, behaviours=EAT_AND_REST, features=("shape", "size"), hidden
     return Networks(behaviours, features, hidden, np.random.default_rng(seed).normal(size=shape))
 
 
-@settings(max_examples=30, deadline=None)
 @given(st.integers(0, 2**32), st.integers(1, 4), st.integers(1, 4), st.integers(1, 5))
 def test_likelihoods_go_by_the_names_of_features_and_behaviours(seed, b, f, hidden):
     behaviours = tuple(f"act{n}" for n in range(b))
@@ -93,7 +92,6 @@ def file(tmp_path_factory):
     return tmp_path_factory.mktemp("networks") / "learnt.toml"
 
 
-@settings(max_examples=60, deadline=None)
 @given(data=st.data(), behaviours=names, features=names, hidden=st.integers(1, 3))
 def test_what_is_saved_is_loaded_to_the_last_bit(file, data, behaviours, features, hidden):
     shape = (len(behaviours), weight_count(len(features), hidden))
@@ -105,7 +103,6 @@ def test_what_is_saved_is_loaded_to_the_last_bit(file, data, behaviours, feature
     assert again.weights.tobytes() == known.weights.tobytes()
 
 
-@settings(max_examples=60, deadline=None)
 @given(place=st.integers(0, 10_000), byte=st.integers(1, 255))
 def test_a_file_that_is_damaged_is_refused_or_says_the_same(file, place, byte):
     networks(4, hidden=2).save(file)

@@ -17,7 +17,7 @@ from typing import Any
 import numba
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.mind.selection import affordance_times_drive, select, winner_take_all
@@ -328,7 +328,6 @@ def over(root: types.ModuleType, places: list[Place], handed_on: bool) -> Any:
     return around["asks"]
 
 
-@settings(max_examples=60, deadline=None)
 @given(plan=nests(), data=st.data(), handed_on=st.booleans())
 def test_one_leaf_of_any_nest_changes_it_and_building_it_again_does_not(plan, data, handed_on):
     places = leaves(plan)

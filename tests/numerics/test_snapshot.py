@@ -83,7 +83,7 @@ def change(kind: str, holder: Any, name: str, number: float) -> None:
 numbers = st.floats(-1e6, 1e6)
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=settings().max_examples // 6)
 @given(
     kinds=st.lists(st.sampled_from(KINDS), min_size=1, max_size=2),
     data=st.data(),

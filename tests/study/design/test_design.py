@@ -8,7 +8,7 @@ from collections import Counter
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.settings import SettingsError, validated
@@ -110,7 +110,6 @@ def check(case: Case, changes: dict[str, Any]) -> None:
         assert case.teacher is None
 
 
-@settings(max_examples=60, deadline=None)
 @given(design=designs(), paired=st.booleans())
 def test_cases_are_all_combinations_in_order(design, paired):
     study = study_of(design, paired=paired, seed=7, lives=5)
@@ -132,7 +131,6 @@ def test_cases_are_all_combinations_in_order(design, paired):
         check(case, {**changes, **at_point})
 
 
-@settings(max_examples=40, deadline=None)
 @given(design=designs(), data=st.data())
 def test_what_is_excluded_is_counted_once_and_not_a_case(design, data):
     everything = cases(study_of(design))
@@ -226,7 +224,6 @@ def test_a_world_may_go_by_another_name():
     assert case.settings.world.world().name == "Eden"
 
 
-@settings(max_examples=40, deadline=None)
 @given(design=designs())
 def test_a_design_is_written_with_its_factors_in_their_order(design):
     study = study_of(design)

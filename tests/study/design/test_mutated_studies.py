@@ -290,7 +290,7 @@ def refused(file: Path) -> list[str]:
     return [line.removeprefix(f"{file}: ") for line in lines]
 
 
-@settings(max_examples=400, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=4 * settings().max_examples, suppress_health_check=list(HealthCheck))
 @given(mutation=mutations())
 def test_a_changed_study_is_refused_or_means_what_it_says(file, mutation):
     _, data = mutation

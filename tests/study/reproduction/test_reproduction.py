@@ -195,11 +195,11 @@ def test_what_was_broken_off_with_other_settings_is_kept_unless_it_is_begun_anew
     assert set(result.lives["seed"].to_pylist()) == {2}
 
 
-def test_lives_that_fail_are_left_out_and_counted(tmp_path, monkeypatch):
+def test_lives_that_fail_are_left_out_and_counted(tmp_path, lost, monkeypatch):
     own = tmp_path / "own.py"
-    own.write_text(FAILING)
+    own.write_text(lost)
     settings = LifeSettings(mind=Mind(wander=f"{own}:walk"))
-    size = Size(robots=3, lives=20, steps=600)
+    size = Size(robots=3, lives=20, steps=200)
     result = reproduce(settings, seed=1, size=size, directory=tmp_path / "out", tell=silent)
     robots = set(result.learnt.final["seed"].to_pylist())
     assert result.failed > 0
@@ -215,13 +215,6 @@ def test_lives_that_fail_are_left_out_and_counted(tmp_path, monkeypatch):
 
 
 COLUMNS = [("case", pa.int64()), ("error", pa.string())]
-
-FAILING = """
-def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
-    if luck_a < 0.0005:
-        raise ValueError("lost")
-    return speed, speed
-"""
 
 
 def test_both_experiments_are_the_studies_that_come_with_animat():

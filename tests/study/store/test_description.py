@@ -69,24 +69,18 @@ def test_another_engine_is_refused(small, copied, monkeypatch):
     assert line == f"was lived by engine {read_manifest(copied)['engine']}, and this is engine 999"
 
 
-WALK = """
-def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
-    return speed, speed - {number}
-"""
-
-
-def test_a_file_that_has_changed_is_refused_and_its_copy_kept(faults, tmp_path):
+def test_a_file_that_has_changed_is_refused_and_its_copy_kept(faults, tmp_path, lost):
     own = tmp_path / "own.py"
-    own.write_text(WALK.format(number=1))
+    own.write_text(lost)
     text = f'name = "own"\nlives = 1\nsteps = 5\n[mind]\nwander = "{own}:walk"\n'
     directory = tmp_path / "results"
     faults.go_on(faults.plan(text), directory)
-    own.write_text(WALK.format(number=2))
+    own.write_text(lost.replace("speed, speed", "speed, speed - 2"))
     (line,) = differences_from(directory, faults.plan(text + "# read again\n"))
     assert line == f"{own} has changed since; as it was it is in {directory / 'inputs'}"
     assert verify(Results(directory), telling).problems == [line]
     copy = directory / "inputs" / "outside" / own.relative_to("/")
-    assert copy.read_text() == WALK.format(number=1)
+    assert copy.read_text() == lost
     own.unlink()
     gone = f"{own} is not there any more; as it was it is in {directory / 'inputs'}"
     assert differences_from(directory, faults.plan(text)) == [gone]

@@ -190,11 +190,9 @@ def test_lives_that_are_others_now_are_told_of(copied):
     assert problem.startswith(f"{copied}: its lives are not those that are lived now")
 
 
-def test_a_copy_of_a_file_that_is_none_any_more_is_found(faults, tmp_path):
+def test_a_copy_of_a_file_that_is_none_any_more_is_found(faults, tmp_path, lost):
     own = tmp_path / "own.py"
-    own.write_text(
-        "def walk(readings, a, s, memory, luck_a, luck_b, speed, turn):\n    return 1, 2\n"
-    )
+    own.write_text(lost)
     plan = faults.plan(f'name = "own"\nlives = 1\nsteps = 5\n[mind]\nwander = "{own}:walk"\n')
     faults.go_on(plan, tmp_path / "results")
     assert looked(tmp_path / "results").problems == []
