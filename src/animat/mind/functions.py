@@ -259,7 +259,7 @@ def _why(error: Exception) -> str:
     if any(sign in str(error) for sign in ALLOCATION):
         return "it makes a new array, list or other object, for which a step has no room"
     lines = [line.strip() for line in str(error).splitlines()]
-    telling = [line for line in lines if line and not line.startswith("Failed in nopython mode")]
+    telling = [line for line in lines if line and not line.startswith("Failed in ")]
     return " ".join(telling[:1]) or type(error).__name__
 
 
