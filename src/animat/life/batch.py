@@ -206,7 +206,7 @@ def failure(
     life: NDArray[np.uint64],
     states: NDArray[np.void],
     until: int,
-    error: BaseException | None,
+    error: Exception | None,
     earlier: Callable[[], Snapshot],
 ) -> str | None:
     """Return why a life (`life` [1], `states` [1]) failed while it was advanced, or None.

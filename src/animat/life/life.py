@@ -83,7 +83,7 @@ class Life:
         """
         states = np.array([self.state], self.state.dtype)
         columns = summary(self.setting, self.seed, np.array([self.index]), states)
-        return {name: column[0].as_py() for name, column in columns.items()} | {"error": None}
+        return {**{name: column[0].as_py() for name, column in columns.items()}, "error": None}
 
     @property
     def networks(self) -> Networks:
