@@ -161,7 +161,7 @@ def _replaced(x):
     return lambda x: rate * x
 
 
-TEAM = (up, each)
+TEAM = (up, down)
 
 
 def law_each(x):

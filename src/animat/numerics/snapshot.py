@@ -101,10 +101,10 @@ class _Copies:
         cells = {name: CellType() for name in code.co_freevars}
         copy = FunctionType(code, around, function.__name__, None, tuple(cells.values()))
         copy.__qualname__ = function.__qualname__
-        made = self.functions[id(function)] = _compiled_like(like, copy)
         copy.__defaults__ = self.value(function.__defaults__)
         kwdefaults = function.__kwdefaults__ or {}
         copy.__kwdefaults__ = {name: self.value(one) for name, one in kwdefaults.items()}
+        made = self.functions[id(function)] = _compiled_like(like, copy)
         there = dict(zip(code.co_freevars, function.__closure__ or (), strict=True))
         for found in taken(function):
             name = found.path[0]
