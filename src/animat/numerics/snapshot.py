@@ -13,23 +13,15 @@ from types import CellType, FunctionType, ModuleType
 from typing import Any
 from weakref import WeakKeyDictionary
 
-import numba
 import numpy as np
-from numba.core import utils
+from numba.core import config, utils
 from numba.core.dispatcher import Dispatcher
 from numba.core.registry import cpu_target
 from numba.np.ufunc.dufunc import DUFunc
 
 from animat.numerics.compiled import compiled
-from animat.numerics.identity import (
-    STEP_OPTIONS,
-    Identity,
-    identity,
-    in_library,
-    library_name,
-    python_function,
-    taken,
-)
+from animat.numerics.identity import STEP_OPTIONS, Identity, identity
+from animat.numerics.taken import in_library, library_name, python_function, taken
 from animat.settings import SettingsError
 
 _SNAPSHOTS: dict[Identity, Any] = {}
@@ -43,7 +35,7 @@ def snapshot(function: Any) -> Any:
     is returned as it is.
     """
     plain = python_function(function)
-    if plain is None or numba.config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
+    if plain is None or getattr(config, "DISABLE_JIT", False):
         return plain or function
     if isinstance(function, Dispatcher) and library_name(function) is not None:
         return function
