@@ -35,8 +35,8 @@ INPUTS = "inputs"
 FOLDERS = ("lives", "teachers", "curves", "traces", INPUTS)
 
 OTHER_LIVES = (
-    "its lives are not those that are lived now of the same study: animat has changed, or what a"
-    " function of your own calls"
+    "its lives are not those that are lived now of the same study: animat or the version of Python"
+    " has changed, or what a custom function computes by"
 )
 WRITTEN_ANEW = "animat run with the same study writes it anew"
 
