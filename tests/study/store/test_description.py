@@ -90,6 +90,12 @@ def test_a_file_that_has_changed_is_refused_and_its_copy_kept(faults, tmp_path, 
     assert differences_from(directory, faults.plan(text)) == []
 
 
+WALK = """
+def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+    return speed, speed - {number}
+"""
+
+
 def test_a_study_can_be_run_again_where_the_copies_are(faults, tmp_path, monkeypatch):
     """With all that its functions import, and with another neighbour of the same name elsewhere."""
     text = 'name = "own"\nlives = 1\nsteps = 5\n[design.grid]\n"mind.wander" = ["{a}", "{b}"]\n'
