@@ -38,6 +38,9 @@ SLICE = 10_000
 """Steps of each life of a chunk between two looks at the outside."""
 
 
+MOST_LIVES = 10**9
+"""Lives that may be asked for at once; in a study, by each case."""
+
 MOST_THREADS = 4_096
 
 TURNS = 8
@@ -112,7 +115,7 @@ def live_chunks(
     """
     seed, _, steps = check(seed, 0, steps)
     first = whole("first", first, 0, MOST_63, LifeError)
-    lives = whole("lives", lives, 1, MOST_63 + 1 - first, LifeError)
+    lives = whole("lives", lives, 1, min(MOST_LIVES, MOST_63 + 1 - first), LifeError)
     if threads is None:
         threads = os.cpu_count() or 1
     threads = whole("threads", threads, 1, MOST_THREADS, LifeError)

@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 import pyarrow.parquet as pq
 
-from animat import arguments
-from animat.arguments import callback
+from animat.arguments import callback, file
 from animat.files import check_writable, whole
 from animat.life.life import Life, Moment, Progress, TraceChoice, birth, check, live, lived
 from animat.life.recording import EVERY, Recording, write_recording
@@ -113,9 +112,8 @@ def record(
     seed, life, steps = check(seed, life, steps)
     callback("progress", progress, LifeError)
     moment = birth(bring_together(mind, world, robot), seed, life)
-    file = arguments.path("path", path)
     return write_recording(
-        file, moment, steps=steps, every=every, made=provenance(), progress=progress
+        file("path", path), moment, steps=steps, every=every, made=provenance(), progress=progress
     )
 
 
