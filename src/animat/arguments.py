@@ -30,6 +30,9 @@ MOST_64 = (1 << 64) - 1
 MOST_63 = (1 << 63) - 1
 """The largest index of a life: tables hold it in 64 bits, one of them for the sign."""
 
+LONGEST_NAME = 255
+"""Bytes of the name of a file."""
+
 DEEPEST = 32
 """Tables and lists inside one another; no settings come near it."""
 
@@ -136,12 +139,21 @@ def callback(name: str, value: Any, error: type[Error] = SettingsError) -> Any:
 
 def path(name: str, value: Any) -> Path:
     """Return an argument as a path. Raises SettingsError for what is none."""
-    if isinstance(value, str | Path):
-        with suppress(ValueError):
-            if b"\0" not in os.fsencode(value):
-                return Path(value)
-        raise SettingsError(f"{name} = {brief(str(value))}; it cannot be a path")
-    raise SettingsError(f"{name} {_is(value)}; give a path")
+    if not isinstance(value, str | Path):
+        raise SettingsError(f"{name} {_is(value)}; give a path")
+    with suppress(ValueError):
+        parts = os.fsencode(value).split(b"/")
+        if not any(b"\0" in part or len(part) > LONGEST_NAME for part in parts):
+            return Path(value)
+    raise SettingsError(f"{name} = {brief(str(value))}; it cannot be a path")
+
+
+def file(name: str, value: Any) -> Path:
+    """Return an argument as the path of a file to be written. Raises SettingsError."""
+    found = path(name, value)
+    if not found.name:
+        raise SettingsError(f"{name} = {brief(str(value))}; give the name of a file")
+    return found
 
 
 def _is(value: Any) -> str:

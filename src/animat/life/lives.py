@@ -41,6 +41,9 @@ CHUNK, LARGEST_CHUNK = 32, 8192
 STEPS_OF_A_CHUNK = 2_000_000
 """What a chunk of short lives comes to, so that the table of it costs little beside them."""
 
+MOST_LIVES = 10**9
+"""Lives that may be asked for at once; in a study, by each case."""
+
 MOST_THREADS = 4_096
 
 TURNS = 8
@@ -166,7 +169,7 @@ def live_chunks(
     """
     seed, _, steps = check(seed, 0, steps)
     first = whole("first", first, 0, MOST_63, LifeError)
-    lives = whole("lives", lives, 1, MOST_63 + 1 - first, LifeError)
+    lives = whole("lives", lives, 1, min(MOST_LIVES, MOST_63 + 1 - first), LifeError)
     if threads is None:
         threads = os.cpu_count() or 1
     threads = whole("threads", threads, 1, MOST_THREADS, LifeError)

@@ -113,7 +113,7 @@ class Recording:
 
         Raises SettingsError where that was not recorded, or the life cannot be lived here.
         """
-        step = whole("step", step, error=LifeError)
+        step = whole("step", step, 0, LONGEST, LifeError)
         first, last = self.head.first, self.head.last
         if not first <= step <= last:
             raise LifeError(f"{self.path}: step {step} is not recorded, only {first} to {last} are")

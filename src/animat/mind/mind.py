@@ -12,7 +12,7 @@ from animat.mind.affordance import weight_count
 from animat.mind.agents import AGENTS, Agent
 from animat.mind.changes import Complete, changing, removing
 from animat.mind.functions import BUILT_IN, Functions, resolve
-from animat.mind.networks import Networks
+from animat.mind.networks import MOST_HIDDEN, Networks
 from animat.mind.parameters import ESTIMATORS, LAWS, LEARNERS, SELECTORS, WANDERERS
 from animat.mind.physiology import PHYSIOLOGIES, Kind, Variable
 from animat.mistakes import plain
@@ -84,7 +84,7 @@ _check_behaviours, _write_behaviours = changing(PAPER_BEHAVIOURS, Behaviour)
 class Learning(Settings):
     """The affordance networks and their learning rule."""
 
-    hidden_units: Annotated[int, Field(ge=1, le=64)] = 2
+    hidden_units: Annotated[int, Field(ge=1, le=MOST_HIDDEN)] = 2
     biases: bool = True
     rate: Annotated[float, Field(gt=0.0)] = 0.5
     cycles: Annotated[int, Field(ge=1, le=10_000)] = 10

@@ -21,6 +21,9 @@ from animat.settings import SettingsError, nearest
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+MOST_HIDDEN = 64
+"""Hidden units of a network."""
+
 
 @dataclass(frozen=True, eq=False)
 class Networks:
@@ -40,7 +43,7 @@ class Networks:
         """Take a copy of the weights, and check that they fit."""
         behaviours = _names("behaviours", self.behaviours)
         features = _names("features", self.features)
-        hidden = whole("hidden", self.hidden, 1)
+        hidden = whole("hidden", self.hidden, 1, MOST_HIDDEN)
         weights = reals("weights", self.weights)
         wanted = (len(behaviours), weight_count(len(features), hidden))
         if weights.shape != wanted:

@@ -75,7 +75,7 @@ class Sensor(Settings):
 class Khepera(Settings):
     """The settings of the robot; the defaults are those of Michel's simulator.
 
-    Raises pydantic's ValidationError for unknown names, wrong types and impossible values.
+    Raises SettingsError for unknown names, wrong types and impossible values.
     """
 
     radius: float = Field(default=27.5, gt=0, description="of the body, mm")
@@ -83,7 +83,9 @@ class Khepera(Settings):
     step_mm: float = Field(
         default=0.5, gt=0, description="mm a wheel moves per step and motor unit"
     )
-    max_motor: int = Field(default=10, ge=1, description="largest motor command, either way")
+    max_motor: int = Field(
+        default=10, ge=1, le=1_000_000, description="largest motor command, either way"
+    )
     motor_noise: bool = Field(default=True, description="whether motion is noisy")
     position_noise: float = Field(
         default=0.10,

@@ -13,8 +13,7 @@ from typing import NamedTuple
 import pyarrow as pa
 from pydantic import ValidationError
 
-from animat import arguments
-from animat.arguments import callback
+from animat.arguments import callback, file
 from animat.files import check_writable, whole
 from animat.life.life import Life, Moment, Progress, TraceChoice, birth, check, live, lived
 from animat.life.recording import EVERY, Recording, write_recording
@@ -133,9 +132,8 @@ def record(
     callback("progress", progress, LifeError)
     setting = bring_together(mind, world, robot, check_functions=check_functions)
     moment = birth(setting, seed, life)
-    file = arguments.path("path", path)
     return write_recording(
-        file, moment, steps=steps, every=every, made=provenance(), progress=progress
+        file("path", path), moment, steps=steps, every=every, made=provenance(), progress=progress
     )
 
 

@@ -18,6 +18,7 @@ from pydantic import (
 
 from animat.names import MARKS, malformed, name_problems
 from animat.settings import Settings, nearest
+from animat.world.arena import LONGEST
 from animat.world.shapes import FEWEST_SIDES, MOST_SIDES, SIDES, polygon
 
 Corners = tuple[tuple[float, float], ...]
@@ -68,7 +69,7 @@ class ObjectType(Settings):
         PlainSerializer(lambda shape: shape, return_type=Any),
         WithJsonSchema(_SHAPE_SCHEMA),
     ]
-    size_mm: Annotated[float, Field(gt=0)] | None = None
+    size_mm: Annotated[float, Field(gt=0, le=LONGEST)] | None = None
     features: Annotated[dict[str, float], Field(min_length=1)]
     affords: Annotated[dict[str, Probability], Field(min_length=1)]
 

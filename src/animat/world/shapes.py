@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.world.arena import LONGEST
 from animat.world.geometry import turn_and_shift
 
 SIDES = {"triangle": 3, "square": 4, "pentagon": 5, "hexagon": 6, "octagon": 8}
@@ -73,8 +74,8 @@ def _own_polygon(shape: Sequence[Sequence[float]], size_mm: float | None) -> NDA
     if len(shape) < FEWEST_SIDES or any(len(corner) != 2 for corner in shape):
         raise ValueError("corners are a list of at least three pairs [x, y] in mm")
     corners = np.array(shape, dtype=np.float64)
-    if not np.isfinite(corners).all():
-        raise ValueError("a corner is not a finite number")
+    if not (np.abs(corners) <= LONGEST).all():
+        raise ValueError(f"a corner is not a number from {-LONGEST:g} to {LONGEST:g} mm")
     crossing = _crossing_sides(corners)
     if crossing is not None:
         raise ValueError(f"sides {crossing[0]} and {crossing[1]} of the polygon touch or cross")

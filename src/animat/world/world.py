@@ -104,7 +104,7 @@ class World:
         Raises:
             SettingsError: the file cannot be written.
         """
-        write_world(arguments.path("path", path), self.name, self.layout, self.resolution)
+        write_world(arguments.file("path", path), self.name, self.layout, self.resolution)
 
     def with_spares(self, n_per_type: int, seed: int = 0, gap: float | None = None) -> World:
         """Return the world with `n_per_type` more spare sites of every type that occurs in it.

@@ -147,6 +147,9 @@ def _own_names(design: Design) -> Iterator[Mistake]:
             line = "another factor has this name"
         else:
             seen.add(name)
+            for level in levels:
+                if problem := malformed(level):
+                    yield Mistake((*place, level), "", problem)
             continue
         yield Mistake(place, "", line)
 

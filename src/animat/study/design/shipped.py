@@ -34,7 +34,7 @@ def study_file(study: str) -> Path:
     """
     path = arguments.path("study", study)
     is_path = path.suffix == ".toml" or path.parent != Path() or path.is_file()
-    return path if is_path else shipped(study)
+    return path if is_path else shipped(str(path))
 
 
 def write_starter(path: Path, *, force: bool) -> None:

@@ -16,6 +16,7 @@ from pydantic_core import PydanticSerializationError
 from animat import arguments
 from animat.arguments import sequence
 from animat.life.life import TraceChoice
+from animat.life.lives import MOST_LIVES
 from animat.life.setting import LifeError
 from animat.mistakes import mistakes, written
 from animat.settings import (
@@ -35,9 +36,6 @@ from animat.study.design.shipped import LONGEST_NAME, is_name
 from animat.study.design.telling import told
 
 __all__ = ["Record", "Study", "Teacher", "read_study"]
-
-MOST_LIVES = 10**9
-"""Lives a case may have; so the index of every life is a whole number of 63 bits."""
 
 
 def _named_like_a_directory(name: str) -> str:
