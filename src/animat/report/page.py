@@ -118,6 +118,8 @@ def write_page(
 
 def is_page(path: Path) -> bool:
     """Whether a file is a page that was written here. Raises OSError if it cannot be read."""
+    if not path.is_file():
+        return False
     with path.open("rb") as file:
         return GENERATOR.encode() in file.read(1_000)
 
