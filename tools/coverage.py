@@ -56,7 +56,7 @@ def main() -> None:
     """Draw studies, and print shares of them."""
     parser = argparse.ArgumentParser(description="Try the report's intervals on made-up lives.")
     parser.add_argument("--lives", type=int, default=40, help="lives of a case")
-    parser.add_argument("--worlds", type=int, default=2)
+    parser.add_argument("--worlds", type=int, default=2, help="2 or more")
     parser.add_argument("--luck", type=float, default=0.5, help="how much of a life it makes")
     parser.add_argument("--studies", type=int, default=400)
     given = parser.parse_args()

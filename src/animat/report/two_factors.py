@@ -137,7 +137,7 @@ def _interaction(
         (contrasts @ means, pulls @ contrasts.T),
         (contrasts @ np.log(means), (pulls / means) @ contrasts.T),
     ]
-    told = []
+    told: list[Contrast] = []
     for number, (a, a0, b, b0) in enumerate(pairs):
         (difference, difference_p), (log_ratio, ratio_p) = (
             _estimate(values[number], pull[:, number]) for values, pull in scales
@@ -146,17 +146,20 @@ def _interaction(
             Contrast(
                 (axes[0].levels[a], axes[0].levels[a0]),
                 (axes[1].levels[b], axes[1].levels[b0]),
-                Estimate(*(unit * np.array(difference)).tolist()),
+                Estimate(*(unit * each for each in difference)),
                 difference_p,
-                Estimate(*np.exp(log_ratio).tolist()),
+                Estimate(*(float(np.exp(each)) for each in log_ratio)),
                 ratio_p,
             )
         )
+    differences, ratios = (hotelling(*scale) for scale in scales)
     return Interaction(
-        *axes,
+        axes[0],
+        axes[1],
         {
             (int(code // width), int(code % width)): ratio_over(
-                *(each[cell == code] for each in (weight * steps, weight)),
+                (weight * steps)[cell == code],
+                weight[cell == code],
                 sets.take(cell == code),
                 seed=seed,
                 resamples=resamples,
@@ -164,7 +167,8 @@ def _interaction(
             for code in np.unique(cell)
         },
         tuple(told),
-        *(hotelling(*scale) for scale in scales),
+        differences,
+        ratios,
         int(complete.sum()),
         len(used) - int(complete.sum()),
         sets.what,

@@ -73,14 +73,11 @@ def interaction_figure(
         shift = 0.0 if places is not None else APART * (number - (len(lines) - 1) / 2)
         x = at[shown] + shift
         joined = known[shown]
-        style = {"color": colour[line.label], "ls": LINES[number % len(LINES)]}
-        ax.plot(x[joined], mean[joined], **style)
-        ax.errorbar(
-            x, mean, whiskers, color=style["color"], ls="none", capsize=3, lw=1.2, ms=5,
-            marker=MARKERS[number % len(MARKERS)],
-        )  # fmt: skip
-        ax.plot([], [], marker=MARKERS[number % len(MARKERS)], ms=5, label=shortened(line.label),
-                **style)  # fmt: skip
+        ink, dash = colour[line.label], LINES[number % len(LINES)]
+        mark = MARKERS[number % len(MARKERS)]
+        ax.plot(x[joined], mean[joined], color=ink, ls=dash)
+        ax.errorbar(x, mean, whiskers, color=ink, ls="none", capsize=3, lw=1.2, ms=5, marker=mark)
+        ax.plot([], [], color=ink, ls=dash, marker=mark, ms=5, label=shortened(line.label))
     if log:
         ax.set_xscale("log")
     if places is None or len(levels) <= TICKS_AT_MOST:
