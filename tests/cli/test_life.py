@@ -26,7 +26,7 @@ def test_a_line_is_changed_for_one_call(animat, tmp_path):
 
 
 WRONG = {
-    ("--set", "mind.agnt=AF"): '--set mind.agnt=AF: unknown key; did you mean "mind.agent"?',
+    ("--set", "mind.agnt=AF"): '--set "mind.agnt=AF": unknown key; did you mean "mind.agent"?',
     ("--set", "mind.agent=FA"): '--set: key mind.agent = "FA": must be one of',
     ("--set", "mind.agent"): "is not written key=value",
     ("--set", "mind.agent=AF", "--agent", "AF"): "--set mind.agent: --agent sets it, too",

@@ -23,7 +23,7 @@ def test_a_world_is_drawn_with_hints(animat, tmp_path):
     said = animat("world", "mine.toml", "--figure", "mine.svg")
     assert said.code == 0
     assert "hint: object 0 (TS at 300, 300): angle = 90 rad is more than a turn" in said.out
-    assert "hint: type TL: no object is of this type" in said.out
+    assert said.out.count("hint: ") == 1
     assert (tmp_path / "mine.svg").read_bytes().startswith(b"<?xml")
     again = animat("world", "mine.toml", "--figure", "mine.svg")
     assert again.code == 2

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from animat.world.files import WorldFile
 from animat.world.layout import START_FROM_EDGE, START_ROOM, Placement, site_name
+from animat.world.objects import TABLE_1
 from animat.world.raster import FREE, Raster
 from animat.world.world import World
 
@@ -46,7 +47,7 @@ def hints_of_file(file: WorldFile) -> Iterator[str]:
                 f" (resolution = {file.resolution:g} mm): a robot may not notice it; are these mm?"
             )
     standing = {site.type for site in file.objects}
-    for kind in file.types:
+    for kind in file.types if file.types != TABLE_1 else ():
         if kind.name not in {site.type for site in sites}:
             yield f"type {kind.name}: no object is of this type"
     here = [kind for kind in file.types if kind.name in standing]
