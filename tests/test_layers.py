@@ -20,14 +20,17 @@ import animat
 
 ROOT = Path(animat.__file__).parent
 
-GROUND = {"settings", "mistakes", "files", "version"}
+GROUND = {"settings", "mistakes", "files", "version", "errors", "arguments", "names"}
 """Modules that every layer may know."""
 
 KNOWS: dict[str, set[str]] = {
     "version": set(),
     "mistakes": set(),
-    "settings": {"mistakes"},
-    "files": {"mistakes", "settings"},
+    "errors": {"mistakes"},
+    "arguments": {"mistakes", "errors"},
+    "names": {"mistakes"},
+    "settings": {"mistakes", "errors", "arguments"},
+    "files": {"mistakes", "errors", "settings"},
     "progress": set(),
     "numerics": GROUND,
     "world": GROUND | {"numerics"},

@@ -13,9 +13,9 @@ from typing import Annotated, Literal
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from animat.settings import Settings, SettingsError, explain, nearest, read_toml
+from animat.settings import Settings, SettingsError, nearest, read_toml
 
 
 class Variable(Settings):
@@ -101,7 +101,7 @@ def test_numbers_keep_every_bit(tmp_path_factory, value):
 
 
 def test_settings_cannot_be_changed():
-    with pytest.raises(ValidationError, match="frozen"):
+    with pytest.raises(SettingsError, match="frozen"):
         Mind().agent = "AF"  # pyright: ignore[reportAttributeAccessIssue]
 
 
@@ -230,11 +230,10 @@ def test_what_cannot_be_opened_is_refused(tmp_path):
 
 def test_python_gives_the_same_lines(tmp_path):
     data = tomllib.loads("seed = -1\n[mind]\nagent = 'LERNING'\n[mind.variables.n]\nrat = 1\n")
-    with pytest.raises(ValidationError) as caught:
+    with pytest.raises(SettingsError) as caught:
         Study(**data)
-    error = explain(caught.value, Study, "Study")
     file = refused(tmp_path, "seed = -1\nmind = {agent='LERNING', variables.n.rat=1}")
-    assert error.problems == tuple(f"Study: {line}" for line in file)
+    assert list(caught.value.problems) == file
     assert len(file) == 3
 
 

@@ -13,13 +13,13 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from animat.errors import Error, SettingsError
     from animat.life.life import Life, Moment, live
     from animat.life.lives import Lives, live_many
     from animat.life.recording import Recording
     from animat.mind.mind import Behaviour, Drive, Learning, Mind, VariableChange
     from animat.mind.networks import Networks
     from animat.robot.khepera import Khepera
-    from animat.settings import SettingsError
     from animat.study.from_python import StudyRun, run
     from animat.study.one_life import record
     from animat.version import __version__ as __version__
@@ -32,6 +32,7 @@ _HOMES = {
     "Arena": "animat.world.arena",
     "Behaviour": "animat.mind.mind",
     "Drive": "animat.mind.mind",
+    "Error": "animat.errors",
     "Khepera": "animat.robot.khepera",
     "Layout": "animat.world.layout",
     "Learning": "animat.mind.mind",
@@ -43,7 +44,7 @@ _HOMES = {
     "ObjectType": "animat.world.objects",
     "Placement": "animat.world.layout",
     "Recording": "animat.life.recording",
-    "SettingsError": "animat.settings",
+    "SettingsError": "animat.errors",
     "StudyRun": "animat.study.from_python",
     "TABLE_1": "animat.world.objects",
     "VariableChange": "animat.mind.mind",
@@ -60,6 +61,7 @@ __all__ = [
     "Arena",
     "Behaviour",
     "Drive",
+    "Error",
     "Khepera",
     "Layout",
     "Learning",

@@ -81,7 +81,7 @@ def wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
         if speed == 9:
             return 3.0, math.inf
         if speed == 10:
-            raise KeyboardInterrupt("stop")
+            raise MemoryError("stop")
     return curved_wander(readings, aheads, sides, memory, luck_a, luck_b, 5, turn)
 
 

@@ -98,7 +98,7 @@ KINDS = {
         {"wander": 9},
         "wander: wander returned (3, inf), the motors take -10 to 10",
     ),
-    "wander raises": ({"wander": 10}, "wander: wander raised KeyboardInterrupt: stop"),
+    "wander raises": ({"wander": 10}, "wander: wander raised MemoryError: stop"),
 }
 
 

@@ -72,8 +72,8 @@ def test_every_column_has_its_type(life):
     words = pa.dictionary(pa.int32(), pa.string())
     assert all(schema.field(name).type == words for name in word)
     assert life.trace["step"].to_pylist() == list(range(STEPS))
-    never = {"object", *(f"likelihood_{b}" for b in BEHAVIOURS)}
-    assert {n for n in schema.names if life.trace[n].null_count} == never
+    maybe = {"object", *(f"likelihood_{b}" for b in BEHAVIOURS)}
+    assert "object" in {n for n in schema.names if life.trace[n].null_count} <= maybe
 
 
 @pytest.mark.parametrize("every", [1, 2, 7, 1_000])
@@ -122,13 +122,9 @@ def test_the_step_of_a_death_is_the_last_row_of_every_recording(small, caring_fo
 
 @pytest.mark.parametrize("record", ["all", "every:50", "last:7"])
 def test_the_row_of_a_death_by_an_act_holds_the_values_that_killed(record, small):
-    mind = Mind(behaviours={
-        "eat": {"serves": "hunger", "needs": "grasp", "success": {"stamina": -0.9}, "failure": {"stamina": -0.9}},
-        "shelter": {"serves": "fatigue", "needs": "shelter", "failure": {"nutrition": -0.9}, "success": {"nutrition": -0.9}},
-        "interact": {"serves": "curiosity", "needs": "interact", "failure": {"restlessness": -0.9}},
-    }, overflow="lethal", failed_act="lethal")  # fmt: skip
-    life = live(mind, small, seed=1, record=record)
-    assert not life.death.endswith("metabolism")
+    life = live(Mind(failure_effect=0.9), small, seed=1, record=record)
+    assert life.death is not None
+    assert life.death.endswith("failure")
     last = life.trace.to_pylist()[-1]
     assert [last[name] for name in KINDS] == life.state["values"].tolist()
     died = life.summary["death_variable"]
@@ -137,20 +133,17 @@ def test_the_row_of_a_death_by_an_act_holds_the_values_that_killed(record, small
 
 def test_a_likelihood_is_null_until_its_network_was_asked(small):
     """And a network that says 0 has been asked."""
-    life = live(
-        Mind(agent="ORACLE", death=False, gate="always"), small, seed=2, steps=STEPS, record="all"
-    )
+    mind = Mind(agent="ORACLE", death=False, gate="always")
+    life = live(mind, small, seed=2, steps=STEPS, record="all")
+    events = life.trace["event"].to_pylist()
+    nulls = 0
     for name in BEHAVIOURS:
-        asked = [
-            row["event"] is not None
-            and "encounter" in row["event"]
-            and row[f"likelihood_{name}"] is not None
-            for row in life.trace.to_pylist()
-        ]
         said = life.trace[f"likelihood_{name}"].to_pylist()
-        first = asked.index(True)
-        assert set(said[:first]) == {None}
+        first = next(step for step, value in enumerate(said) if value is not None)
+        assert "encounter" in events[first]
         assert None not in said[first:]
+        nulls += first
+    assert nulls > 0
     assert 0.0 in life.trace["likelihood_eat"].to_pylist()
 
 

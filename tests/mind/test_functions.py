@@ -269,5 +269,5 @@ def test_a_function_that_returns_the_wrong_thing_is_told_what_to_return(tmp_path
 
 
 def test_uncompiled_a_function_is_taken_as_it_is(monkeypatch):
-    monkeypatch.setattr(numba.config, "DISABLE_JIT", True)
+    monkeypatch.setattr("numba.core.config.DISABLE_JIT", True)
     assert resolve("law", new_list) is new_list

@@ -53,13 +53,17 @@ def value(path: Path) -> Any:
     return load(path).law()
 
 
+NEIGHBOURS = ("own", "util", "pkg", "pkg.own", "pkg.deep", "spaced", "spaced.util", "a", "b")
+
+
 @pytest.fixture(autouse=True)
 def _nothing_is_left_behind():
-    path = list(sys.path)
+    def now():
+        return list(sys.path), [sys.modules.get(name) for name in NEIGHBOURS]
+
+    before = now()
     yield
-    assert sys.path == path
-    left = set(sys.modules) & {"own", "util", "pkg", "pkg.own", "spaced", "spaced.util", "a", "b"}
-    assert not left
+    assert now() == before
 
 
 @pytest.mark.parametrize(("line", "asked"), FORMS.items(), ids=FORMS)

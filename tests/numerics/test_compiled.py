@@ -52,11 +52,15 @@ def whole(x):
 OWN = """
 from animat.numerics.compiled import compiled
 import theirs
+import deep.params
+import numpy
 from theirs import STEEPNESS, part
+
+RATES = numpy.loadtxt("rates.txt")
 
 @compiled
 def other(x):
-    return 1.0 + STEEPNESS[0] * x + theirs.whole(x)
+    return 1.0 + STEEPNESS[0] * x + theirs.whole(x) + RATES[1] + deep.params.WHICH
 
 @compiled
 def own(x):
@@ -147,6 +151,9 @@ class Laboratory:
         (self.package / "life" / "engine.py").write_text(ENGINE)
         (folder / "mine.py").write_text(OWN)
         (folder / "theirs.py").write_text(THEIRS)
+        (folder / "rates.txt").write_text("1.0 0.0")
+        (folder / "deep").mkdir()
+        (folder / "deep" / "params.py").write_text("WHICH = 0.0")
 
     def run(self, own="own", x=1.0, script=CHILD, **settings):
         """Run in a process of its own; return the result and the names of what it compiled."""
@@ -219,8 +226,10 @@ def test_what_a_user_s_file_imports_is_not_overlooked(laboratory):
     laboratory.edit("theirs.py", "STEEPNESS = (7.0", "STEEPNESS = (9.0")
     assert laboratory.run("other")[0] == 112
     laboratory.edit("theirs.py", "0.0 * x", "5.0 * x")
-    assert laboratory.run("other")[0] == 117
-    assert laboratory.run("other") == (117, [])
+    laboratory.edit("rates.txt", "1.0 0.0", "1.0 3.0")
+    laboratory.edit("deep/params.py", "0.0", "4.0")
+    assert laboratory.run("other")[0] == 124
+    assert laboratory.run("other") == (124, [])
 
 
 def test_a_file_that_cannot_be_imported_by_its_name_is_found_again(laboratory):

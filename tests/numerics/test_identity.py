@@ -200,9 +200,20 @@ APART: list[Any] = [
 """Values that are all different."""
 
 
+here: Any = None
+
+
+def takes_here() -> Any:
+    return here
+
+
+def taking(value: Any) -> Any:
+    """Return a function that takes `value` from its globals."""
+    return types.FunctionType(takes_here.__code__, {"here": value})
+
+
 def of(value: Any) -> module.Identity:
-    """Return the identity of a function that takes `value` from its globals."""
-    return identity(types.FunctionType((lambda: here).__code__, {"here": value}))  # noqa: F821
+    return identity(taking(value))
 
 
 def test_values_that_differ_are_told_apart():
@@ -240,9 +251,8 @@ def looped() -> list[Any]:
     ],
 )
 def test_what_cannot_be_identified_is_named(value, named):
-    function = types.FunctionType((lambda: here).__code__, {"here": value})  # noqa: F821
     with pytest.raises(SettingsError, match=f"depends on here, which is of type {named}: "):
-        lasting_identity(function)
+        lasting_identity(taking(value))
 
 
 def test_the_source_files_are_those_of_users(found, tmp_path):
@@ -273,13 +283,12 @@ def nests(draw: st.DrawFn, depth: int = 3) -> dict[str, Any]:
 
 def leaf(kind: str, number: Any) -> Any:
     """Build a leaf of a plan."""
-    around: dict[str, Any] = {"inner": number}
     by_kind = {
         "leaf": lambda: LEAVES[number],
         "array": lambda: np.array([number, 1.0, 2.0])[::2],
         "closure": lambda: lambda: number,
         "default": lambda: types.FunctionType((lambda x: x).__code__, {}, "f", (number,)),
-        "helper": lambda: numba.njit(types.FunctionType((lambda: inner).__code__, around)),  # noqa: F821
+        "helper": lambda: numba.njit(taking(number)),
     }
     return by_kind[kind]()
 

@@ -161,7 +161,7 @@ def _replaced(x):
     return lambda x: rate * x
 
 
-TEAM = (up, each)
+TEAM = (up, down)
 
 
 def law_each(x):
@@ -241,5 +241,5 @@ def test_what_cannot_be_identified_is_compiled_anew():
 
 
 def test_uncompiled_a_function_is_itself(monkeypatch):
-    monkeypatch.setattr(numba.config, "DISABLE_JIT", True)
+    monkeypatch.setattr("numba.core.config.DISABLE_JIT", True)
     assert snapshot(law_within) is law_within

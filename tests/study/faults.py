@@ -27,11 +27,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from animat.files import RunError
 from animat.settings import SettingsError
 from animat.study.design.study import Study
 from animat.study.living.plan import Plan, plan_of
 from animat.study.running.run import run, threads
-from animat.study.store.store import StoreError
 
 SMALL = """
 name = "small"
@@ -144,7 +144,7 @@ def lived(study: Plan, directory: Path) -> int:
     try:
         with threads(2) as workers:
             outcome = run(study, directory, workers, lambda *_, **__: None)
-    except StoreError as error:
+    except RunError as error:
         sys.stderr.write(f"{error}\n")
         return FAILED
     except SettingsError as error:

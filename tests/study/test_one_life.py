@@ -7,6 +7,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import animat
+from animat.life import drawing
 from animat.life import life as life_module
 from animat.life.life import live
 from animat.life.recording import EVERY, Recording
@@ -207,10 +208,10 @@ def test_a_recorded_life_goes_on(tmp_path):
 def test_the_figure_of_a_life_that_goes_on_begins_there(tmp_path, monkeypatch):
     live_one(asked(Mind(agent="LEARNING"), steps=300, record=tmp_path / "a.parquet"), silent)
     drawn = []
-    figure = life_module.Life.figure
-    monkeypatch.setattr(life_module.Life, "figure", lambda self: drawn.append(self) or figure(self))
+    draw = drawing.draw_life
+    monkeypatch.setattr(drawing, "draw_life", lambda *given: drawn.append(given[2]) or draw(*given))
     live_one(asked(source=tmp_path / "a.parquet", at=120, figure=tmp_path / "a.svg"), silent)
-    assert drawn[0].trace["step"].to_pylist() == list(range(120, 300))
+    assert drawn == [(120, 300)]
 
 
 def test_where_a_life_cannot_go_on_is_told(tmp_path):

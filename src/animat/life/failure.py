@@ -54,7 +54,7 @@ def failure_of(setting: Setting, state: np.record) -> str | None:
     return f"{_function(setting, int(state.failure))} {what}, in step {int(state.step) - 1}"
 
 
-def raised(setting: Setting, state: np.record, error: BaseException) -> str:
+def raised(setting: Setting, state: np.record, error: Exception) -> str:
     """Return what the custom function that was called last raised, on one line."""
     told = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
     if state.asked:

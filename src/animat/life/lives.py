@@ -17,6 +17,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
+from animat.arguments import MOST_63, callback, instance, sequence, whole
 from animat.life.batch import Batch, Progress
 from animat.life.life import check
 from animat.life.setting import LifeError, Setting, bring_together
@@ -39,6 +40,8 @@ CHUNK, LARGEST_CHUNK = 32, 8192
 
 STEPS_OF_A_CHUNK = 2_000_000
 """What a chunk of short lives comes to, so that the table of it costs little beside them."""
+
+MOST_THREADS = 4_096
 
 TURNS = 8
 """How many times a thread takes a chunk at least, of lives enough."""
@@ -131,10 +134,14 @@ def live_many(
     on, a RuntimeWarning tells of it, and the column `error` says why. With `check_functions`,
     custom functions check every index they use. Raises LifeError for what cannot be lived.
     """
+    callback("progress", progress, LifeError)
     if networks is not None:
+        networks = sequence("networks", networks, Networks, LifeError)
         if not networks:
             raise LifeError("networks is empty; give at least one")
-        mind = Mind(**{**dict(mind), "networks": networks[0]})
+        if any(one.weights.shape != networks[0].weights.shape for one in networks):
+            raise LifeError("networks differ in their form; all lives have the same")
+        mind = Mind(**{**dict(instance("mind", mind, Mind)), "networks": networks[0]})
     setting = bring_together(mind, world, robot, check_functions=check_functions)
     weights = None if networks is None else np.array([one.weights for one in networks])
     chunks = live_chunks(setting, seed, first, lives, steps, weights, threads, progress)
@@ -157,11 +164,13 @@ def live_chunks(
 
     Only as many chunks as there are threads are held at a time.
     """
-    check(seed, first, steps)
-    if lives < 1:
-        raise LifeError(f"lives = {lives}; allowed are whole numbers from 1")
+    seed, _, steps = check(seed, 0, steps)
+    first = whole("first", first, 0, MOST_63, LifeError)
+    lives = whole("lives", lives, 1, MOST_63 + 1 - first, LifeError)
+    if threads is None:
+        threads = os.cpu_count() or 1
+    threads = whole("threads", threads, 1, MOST_THREADS, LifeError)
     setting.begin(seed, np.array([first], np.uint64))  # a world without room is told of at once
-    threads = threads or os.cpu_count() or 1
     stop = Event()
     batch = Batch(setting, seed, steps, stop=stop, progress=progress)
     size = chunk_size(steps, lives, threads)

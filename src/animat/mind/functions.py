@@ -140,7 +140,7 @@ def _load(role: str, address: str) -> Callable[..., Any]:
     path = Path(file)
     if not file or not path.is_file():
         raise FunctionError(
-            f'{role} = "{address}": no such built-in and no such file;'
+            f'{role} = "{address}": no such built-in and no such file in {Path.cwd()};'
             f" give FILE.py:NAME of a function {SIGNATURES[role]}"
         )
     if path.suffix != ".py":

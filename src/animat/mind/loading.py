@@ -17,7 +17,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from animat.numerics.identity import PACKAGES, in_library
+from animat.numerics.taken import PACKAGES, in_library
 
 NEVER_NEIGHBOURS = ("animat", "numpy", "numba")
 """What these names import is compiled or told apart by its name, so it is never a neighbour."""

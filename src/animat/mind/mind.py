@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import ConfigDict, Field, field_validator, model_validator
 
+from animat.arguments import whole
 from animat.mind.affordance import weight_count
 from animat.mind.agents import AGENTS, Agent
 from animat.mind.changes import Complete, changing, removing
@@ -15,7 +16,8 @@ from animat.mind.networks import Networks
 from animat.mind.parameters import ESTIMATORS, LAWS, LEARNERS, SELECTORS, WANDERERS
 from animat.mind.physiology import PHYSIOLOGIES, Kind, Variable
 from animat.mistakes import plain
-from animat.settings import Settings, explain, nearest
+from animat.names import KEPT, MODES, TRACE, WHICH, name_problems
+from animat.settings import Settings, SettingsError, nearest
 
 Unit = Annotated[float, Field(ge=0.0, le=1.0)]
 
@@ -167,7 +169,7 @@ class Mind(Settings):
     @model_validator(mode="after")
     def _consistent(self) -> Mind:
         variables = self.resolved_variables()
-        problems = _unknown_names(self, variables)
+        problems = [*_misnamed(self, variables), *_unknown_names(self, variables)]
         own_laws = _own_laws(variables)
         if len(set(own_laws.values())) > 1:
             problems.append(
@@ -200,7 +202,7 @@ class Mind(Settings):
     def resolved_variables(self) -> dict[str, Variable]:
         """Return the variables by name: the physiology's, changed and added to by `variables`.
 
-        Raises ValueError, with a line for each mistake, where a changed variable is impossible.
+        Raises SettingsError, with a line for each mistake, where a changed variable is impossible.
         """
         changes = {name: each for name, each in self.variables.items() if each is not False}
         removed = self.variables.keys() - changes.keys()
@@ -224,10 +226,10 @@ class Mind(Settings):
                 continue
             try:
                 resolved[name] = Variable(**settings)
-            except ValidationError as error:
-                problems += explain(error, Variable, f"variables.{name}").problems
+            except SettingsError as error:
+                problems += [f"variables.{name}: {line}" for line in error.problems]
         if problems:
-            raise ValueError("\n".join(problems))
+            raise SettingsError(*problems)
         return resolved
 
     def own_functions(self) -> dict[str, Function]:
@@ -256,7 +258,8 @@ class Mind(Settings):
         return BUILT_IN._replace(**{role: resolve(role, own[role], check=check) for role in own})
 
     def weight_count(self, feature_count: int) -> int:
-        """Return the number of weights of one of its networks."""
+        """Return the number of weights of one of its networks. Raises SettingsError."""
+        feature_count = whole("feature_count", feature_count)
         return weight_count(feature_count, self.learning.hidden_units)
 
 
@@ -264,7 +267,20 @@ def _known(role: str, value: Any, known: dict[Any, int]) -> Any:
     """Let through a built-in name, a function, or FILE.py:NAME."""
     if isinstance(value, str) and value not in known and ".py:" not in value:
         raise ValueError(f"{plain(value)} is no {role}, nor FILE.py:NAME{nearest(value, known)}")
+    if not isinstance(value, Hashable):
+        raise ValueError("must be a function")
     return value
+
+
+def _misnamed(mind: Mind, variables: dict[str, Variable]) -> list[str]:
+    """Tell of names that cannot be columns of a trace, or are modes."""
+    tables = (TRACE, KEPT, WHICH)
+    modes = f"one of the modes {', '.join(MODES)}"
+    return [
+        *name_problems("variable", variables, tables=tables),
+        *name_problems("drive", mind.drives, tables=tables, others=[("a variable", variables)]),
+        *name_problems("behaviour", mind.behaviours, others=[(modes, MODES)]),
+    ]
 
 
 def _unknown_names(mind: Mind, variables: dict[str, Variable]) -> list[str]:

@@ -24,8 +24,7 @@ def checked(function: Any, twins: dict[Any, Any]) -> Any:
     """
     if not isinstance(function, Dispatcher):
         return function
-    original: Any = function
-    source = original.py_func
+    source: Any = function.py_func
     if source in twins:
         if twins[source] is None:
             raise SelfCallError(source.__name__)
@@ -40,13 +39,13 @@ def checked(function: Any, twins: dict[Any, Any]) -> Any:
     copy = FunctionType(source.__code__, around, source.__name__, source.__defaults__, cells)
     copy.__kwdefaults__ = source.__kwdefaults__
     copy.__qualname__, copy.__module__ = source.__qualname__, source.__module__
-    options: dict[str, Any] = {**original.targetoptions, "boundscheck": True}
-    if isinstance(original, InlinedDispatcher):
+    options: dict[str, Any] = {**function.targetoptions, "boundscheck": True}
+    if isinstance(function, InlinedDispatcher):
         twin: Any = inlined(copy, **options)
     else:
         del options["nopython"]
         twin = numba.njit(**options)(copy)
-    twin._set_uuid(f"checked {original._uuid}")
+    twin._set_uuid(f"checked {function._uuid}")
     twins[source] = twin
     return twin
 

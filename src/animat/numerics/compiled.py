@@ -33,6 +33,7 @@ from numba.core.event import Event, Listener, register
 
 from animat.numerics.identity import STEP_OPTIONS
 from animat.numerics.inlined import inlined
+from animat.settings import SettingsError
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -40,6 +41,8 @@ ROOT = Path(__file__).parents[1]
 
 COMPILING_LAYERS = ("numerics", "world", "robot", "mind", "life")
 """The packages that hold compiled functions; a change of another one compiles nothing anew."""
+
+NO_PLACE = "no directory for compiled code can be written; set NUMBA_CACHE_DIR to one that can"
 
 OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False, "_nrt": False}
 
@@ -55,13 +58,20 @@ def compiled(function: Function) -> Function:
 
 
 def kernel(function: Function) -> Function:
-    """Compile a function that Python calls, and keep its machine code on disk."""
-    dispatcher: Any = numba.njit(cache=True, **OPTIONS)(function)
+    """Compile a function that Python calls, and keep its machine code on disk.
+
+    Raises SettingsError where there is no place to keep it.
+    """
+    try:
+        dispatcher: Any = numba.njit(cache=True, **OPTIONS)(function)
+    except RuntimeError:  # numba found none of its places writable
+        raise SettingsError(NO_PLACE) from None
     if dispatcher is not function:
         kept = dispatcher._cache._cache_file
         kept._source_stamp = engine_stamp()
         kept._load_index = _or(dict, kept._load_index)
         kept._load_data = _or(lambda: None, kept._load_data)
+        kept.save = _or(lambda: None, kept.save)  # on a full disk, the next start compiles again
     return _identified(dispatcher, function)
 
 

@@ -13,23 +13,15 @@ from types import CellType, FunctionType, ModuleType
 from typing import Any
 from weakref import WeakKeyDictionary
 
-import numba
 import numpy as np
-from numba.core import utils
+from numba.core import config, utils
 from numba.core.dispatcher import Dispatcher
 from numba.core.registry import cpu_target
 from numba.np.ufunc.dufunc import DUFunc
 
 from animat.numerics.compiled import compiled
-from animat.numerics.identity import (
-    STEP_OPTIONS,
-    Identity,
-    identity,
-    in_library,
-    library_name,
-    python_function,
-    taken,
-)
+from animat.numerics.identity import STEP_OPTIONS, Identity, identity
+from animat.numerics.taken import in_library, library_name, python_function, taken
 from animat.settings import SettingsError
 
 _SNAPSHOTS: dict[Identity, Any] = {}
@@ -43,7 +35,7 @@ def snapshot(function: Any) -> Any:
     is returned as it is.
     """
     plain = python_function(function)
-    if plain is None or numba.config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
+    if plain is None or getattr(config, "DISABLE_JIT", False):
         return plain or function
     if isinstance(function, Dispatcher) and library_name(function) is not None:
         return function
@@ -106,10 +98,10 @@ class _Copies:
         cells = {name: CellType() for name in code.co_freevars}
         copy = FunctionType(code, around, function.__name__, None, tuple(cells.values()))
         copy.__qualname__ = function.__qualname__
-        made = self.functions[id(function)] = _compiled_like(like, copy)
         copy.__defaults__ = self.value(function.__defaults__)
         kwdefaults = function.__kwdefaults__ or {}
         copy.__kwdefaults__ = {name: self.value(one) for name, one in kwdefaults.items()}
+        made = self.functions[id(function)] = _compiled_like(like, copy)
         there = dict(zip(code.co_freevars, function.__closure__ or (), strict=True))
         for found in taken(function):
             name = found.path[0]

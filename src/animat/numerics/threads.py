@@ -83,21 +83,17 @@ class KernelThreads(Executor):
             del item, future, call
 
 
-def attempt(call: Callable[[], Result]) -> tuple[Result | None, BaseException | None]:
+def attempt(call: Callable[[], Result]) -> tuple[Result | None, Exception | None]:
     """Call what runs compiled code, and return its result, or what it raised.
 
     From the main thread it is called on another one, while this one hears Ctrl-C. Uncompiled code
     (`NUMBA_DISABLE_JIT=1`) stays where it is, for a debugger.
     """
 
-    def guarded() -> tuple[Result | None, BaseException | None]:
+    def guarded() -> tuple[Result | None, Exception | None]:
         try:
             return call(), None
         except Exception as error:
-            return None, error
-        except BaseException as error:  # compiled code may raise any; here no signal arrives
-            if threading.current_thread() is threading.main_thread():
-                raise
             return None, error
 
     away = threading.current_thread() is not threading.main_thread()

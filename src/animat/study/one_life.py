@@ -13,6 +13,8 @@ from typing import NamedTuple
 import pyarrow as pa
 from pydantic import ValidationError
 
+from animat import arguments
+from animat.arguments import callback
 from animat.files import check_writable, whole
 from animat.life.life import Life, Moment, Progress, TraceChoice, birth, check, live, lived
 from animat.life.recording import EVERY, Recording, write_recording
@@ -127,11 +129,13 @@ def record(
     one is whole. Raises SettingsError for what cannot be lived, recorded or written; a life that
     fails (FailedLifeError) leaves no file.
     """
-    check(seed, life, steps)
+    seed, life, steps = check(seed, life, steps)
+    callback("progress", progress, LifeError)
     setting = bring_together(mind, world, robot, check_functions=check_functions)
     moment = birth(setting, seed, life)
+    file = arguments.path("path", path)
     return write_recording(
-        Path(path), moment, steps=steps, every=every, made=provenance(), progress=progress
+        file, moment, steps=steps, every=every, made=provenance(), progress=progress
     )
 
 

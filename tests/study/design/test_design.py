@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import ValidationError
 
 from animat.settings import SettingsError, validated
 from animat.study.design.design import Case, Exclusion, cases, excluded
@@ -240,5 +239,5 @@ def test_a_design_is_written_with_its_factors_in_their_order(design):
 
 @pytest.mark.parametrize("why", ["two\nlines", "\x1b[2J"])
 def test_a_reason_is_a_line_that_can_be_printed(why):
-    with pytest.raises(ValidationError, match="must be one line of what can be printed"):
+    with pytest.raises(SettingsError, match="must be one line of what can be printed"):
         Exclusion(when={"mind.agent": "AF"}, why=why)

@@ -2,8 +2,10 @@
 
 from collections import Counter
 
+import pyarrow as pa
 import pytest
 
+from animat.files import RunError
 from animat.life.life import live
 from animat.life.lives import live_many
 from animat.life.setting import LifeError
@@ -193,7 +195,7 @@ def test_what_was_broken_off_with_other_settings_is_kept_unless_it_is_begun_anew
     assert set(result.lives["seed"].to_pylist()) == {2}
 
 
-def test_lives_that_fail_are_left_out_and_counted(tmp_path, lost):
+def test_lives_that_fail_are_left_out_and_counted(tmp_path, lost, monkeypatch):
     own = tmp_path / "own.py"
     own.write_text(lost)
     settings = LifeSettings(mind=Mind(wander=f"{own}:walk"))
@@ -203,6 +205,16 @@ def test_lives_that_fail_are_left_out_and_counted(tmp_path, lost):
     assert result.failed > 0
     assert result.failed == 3 - len(robots) + 80 - result.lives.num_rows
     assert result.lives["lifespan"].null_count == 0
+
+    def all_failed(self, columns=None, where=None):
+        return pa.table({"case": [0, 1], "error": [None, "lost"]}, pa.schema(COLUMNS))
+
+    monkeypatch.setattr(reproduction.Results, "lives", all_failed)
+    with pytest.raises(RunError, match="all lives of a case failed, such as case"):
+        reproduce(settings, seed=1, size=size, directory=tmp_path / "out", tell=silent)
+
+
+COLUMNS = [("case", pa.int64()), ("error", pa.string())]
 
 
 def test_both_experiments_are_the_studies_that_come_with_animat():

@@ -58,7 +58,7 @@ def condensed(parts: Iterable[pa.Table], span: tuple[int, int], curves: Sequence
     events: dict[str, NDArray[np.int64]] = {}
     places: list[NDArray] = []
     rewards = {reward: np.empty((0, 2)) for reward in (1, -1)}
-    rows = 0
+    rows, end = 0, np.empty((0, 2))
     for part in parts:
         step = column(part, "step")
         at = (step - first) // width
@@ -75,7 +75,7 @@ def condensed(parts: Iterable[pa.Table], span: tuple[int, int], curves: Sequence
         place = np.column_stack([column(part, "x"), column(part, "y")])
         places.append(place[(-rows) % every :: every])
         rows += len(step)
-        places.append(place[-1:])
+        end = place[-1:]
         reward = column(part, "reward")
         for kind, before in rewards.items():
             had = np.concatenate([before, place[reward == kind]])
@@ -88,7 +88,7 @@ def condensed(parts: Iterable[pa.Table], span: tuple[int, int], curves: Sequence
         edges,
         _shares(counts),
         events,
-        np.concatenate(places),
+        np.concatenate([*places, end]),
         rewards,
     )
 

@@ -17,6 +17,7 @@ from pydantic import BaseModel
 from animat.mind.mind import PAPER_BEHAVIOURS, PAPER_DRIVES
 from animat.mind.physiology import PHYSIOLOGIES
 from animat.mistakes import allowed_types, inside, is_model, nearest, plain, written
+from animat.settings import SettingsError
 
 Key = tuple[str, ...]
 
@@ -32,7 +33,7 @@ CHANGED: dict[Key, dict[str, Any]] = {
 _PART = r"""[A-Za-z0-9_-]+|"[^"\\\x00-\x1f]*"|'[^'\x00-\x1f]*'"""
 
 
-class UnknownKeyError(ValueError):
+class UnknownKeyError(SettingsError):
     """A key that no setting has."""
 
 

@@ -13,6 +13,8 @@ import tomli_w
 from pydantic import AfterValidator, Field, ValidationError, field_validator, model_validator
 from pydantic_core import PydanticSerializationError
 
+from animat import arguments
+from animat.arguments import sequence
 from animat.life.life import TraceChoice
 from animat.life.setting import LifeError
 from animat.mistakes import mistakes, written
@@ -121,6 +123,8 @@ def read_study(path: Path | str, overrides: Sequence[str] = ()) -> Study:
     The value is TOML, or a bare word, which is taken for a string. Raises SettingsError, with a
     line for every mistake in the file, in the overrides and in the design.
     """
+    path = arguments.path("path", path)
+    overrides = sequence("overrides", overrides, str)
     return study_of(parse_toml(path), str(path), overrides)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import tomllib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
 from threading import Lock
@@ -134,11 +134,7 @@ class Plan:
 
     def case_table(self) -> pa.Table:
         """Return the table of cases: `case`, a column for each factor, `identity`, `same_as`."""
-        names = list(dict.fromkeys(name for case in self.cases for name in case.factors))
-        columns: dict[str, Any] = {"case": [case.number for case in self.cases]}
-        for name in names:
-            columns[name] = _alike([case.factors.get(name) for case in self.cases])
-        return pa.table({**columns, "identity": self.identities, "same_as": self.same_as})
+        return case_table(self.cases, self.identities, self.same_as)
 
     def _number_all(self) -> None:
         first: dict[str, int] = {}
@@ -196,6 +192,15 @@ class Plan:
                 for role, own in mind.own_functions().items():
                     self.inputs.update(_function_files(str(own), getattr(functions, role)))
             return self._functions[key]
+
+
+def case_table(laid_out: Sequence[Case], identities: list[str], same_as: list[int]) -> pa.Table:
+    """Return cases as a table; see `Plan.case_table`."""
+    names = list(dict.fromkeys(name for case in laid_out for name in case.factors))
+    columns: dict[str, Any] = {"case": [case.number for case in laid_out]}
+    for name in names:
+        columns[name] = _alike([case.factors.get(name) for case in laid_out])
+    return pa.table({**columns, "identity": identities, "same_as": same_as})
 
 
 @lru_cache(maxsize=2)

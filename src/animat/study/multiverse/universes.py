@@ -85,6 +85,8 @@ def readings_of(study: Study) -> tuple[Reading, ...]:
     }
     if not factors:
         raise SettingsError(f"{study.name}: has no reading: no factor but {CELL}")
+    if "steps" in factors:
+        raise SettingsError(f"{study.name}: steps is no reading; all universes need one cap")
     return tuple(
         Reading(name, factor, values)
         for name, (factor, values) in zip(_names(factors), factors.items(), strict=True)

@@ -20,7 +20,7 @@ from pydantic import BaseModel, Field, PositiveInt
 
 from animat.files import sync_directory, write_whole
 from animat.life.engine import ENGINE
-from animat.settings import SettingsError
+from animat.settings import SettingsError, opened
 from animat.study.living.columns import schema
 from animat.study.living.numbering import KINDS, Kind
 from animat.study.living.plan import Plan
@@ -35,8 +35,8 @@ INPUTS = "inputs"
 FOLDERS = ("lives", "teachers", "curves", "traces", INPUTS)
 
 OTHER_LIVES = (
-    "its lives are not those that are lived now of the same study: animat has changed, or what a"
-    " function of your own calls"
+    "its lives are not those that are lived now of the same study: animat or the version of Python"
+    " has changed, or what a custom function computes by"
 )
 WRITTEN_ANEW = "animat run with the same study writes it anew"
 
@@ -73,6 +73,8 @@ def read_manifest(directory: Path) -> dict[str, Any]:
     """Return the manifest of a results directory. Raises SettingsError where there is none."""
     path = directory / MANIFEST
     try:
+        if path.exists() and not path.is_file():
+            raise OSError  # reading it might never end
         content = path.read_bytes()
         _Manifest.model_validate_json(content)
         return json.loads(content)
@@ -89,7 +91,8 @@ def read_text(directory: Path, manifest: dict[str, Any]) -> str:
     """Return the text of the study. Raises SettingsError where it is not what it was."""
     path = directory / STUDY
     try:
-        text = path.read_text("utf-8")
+        with opened(path, "study file") as file:
+            text = file.read().decode("utf-8")
     except (OSError, ValueError):
         raise _unreadable(path) from None
     if text_hash(text) != manifest["hash"]:
@@ -101,9 +104,10 @@ def read_cases(directory: Path) -> pa.Table:
     """Return the table of cases. Raises SettingsError where it cannot be read."""
     path = directory / CASES
     try:
-        with path.open("rb") as file:
+        with opened(path, "table") as file:
             cases = pq.read_table(file)
-    except (OSError, pa.ArrowException):
+        cases.validate(full=True)
+    except (OSError, ValueError, pa.ArrowException):
         raise _unreadable(path) from None
     if not {"case", "identity", "same_as"} <= set(cases.column_names):
         raise _unreadable(path)
@@ -117,9 +121,9 @@ def read_columns(directory: Path, kind: Kind) -> pa.Schema:
     """
     path = directory / kind / COLUMNS
     try:
-        with path.open("rb") as file:
+        with opened(path, "table") as file:
             return pq.read_schema(file)
-    except (OSError, pa.ArrowException):
+    except (OSError, ValueError, pa.ArrowException):
         if kind == "teachers" and not path.parent.exists():
             return pa.schema([])
         raise _unreadable(path) from None
@@ -189,7 +193,8 @@ def changed_inputs(directory: Path, manifest: dict[str, Any]) -> list[str]:
         there = Path(path).is_file()
         if not there or file_hash(Path(path)) != content:
             what = "has changed since" if there else "is not there any more"
-            lines.append(f"{path} {what}; as it was it is in {directory / INPUTS}")
+            where = "" if Path(path).is_absolute() else f" (looked for in {Path.cwd()})"
+            lines.append(f"{path} {what}{where}; as it was it is in {directory / INPUTS}")
     return lines
 
 

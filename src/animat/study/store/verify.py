@@ -27,7 +27,7 @@ from animat.study.living.parts import (
     table_of,
 )
 from animat.study.living.plan import Plan, plan_of
-from animat.study.living.seal import content, content_of, seal_of
+from animat.study.living.seal import content, wrong_with
 from animat.study.living.teachers import read_networks
 from animat.study.store.description import (
     CASES,
@@ -46,9 +46,6 @@ from animat.study.store.results import Results
 
 SAMPLE = 64
 """Parts of a kind from which a life is lived again; they lie evenly spread over all there are."""
-
-
-LIVED_AGAIN = "take it away, and animat run with the same study lives it again"
 
 
 class Verified(NamedTuple):
@@ -137,17 +134,9 @@ def _read_again(directory: Path, plan: Plan, part: Part) -> list[str] | None:
 
 
 def _wrong(directory: Path, plan: Plan, part: Part) -> Iterator[str]:
-    for name in file_names(plan, part):
-        path = directory / name
-        seal = seal_of(path)
-        if not path.exists():
-            yield f"{path}: is missing"
-        elif seal is None:
-            yield f"{path}: is torn"
-        elif seal.identity != part_identity(plan, part):
-            yield f"{path}: holds other lives than it should; {LIVED_AGAIN}"
-        elif content_of(path) != seal.content:
-            yield f"{path}: has changed since it was written; {LIVED_AGAIN}"
+    identity = part_identity(plan, part)
+    found = (wrong_with(directory / name, identity) for name in file_names(plan, part))
+    yield from filter(None, found)
 
 
 def _taught_by(plan: Plan, part: Part) -> set[Part]:
