@@ -45,7 +45,8 @@ def checked(function: Any, twins: dict[Any, Any]) -> Any:
     else:
         del options["nopython"]
         twin = numba.njit(**options)(copy)
-    twin._set_uuid(f"checked {function._uuid}")
+    original: Any = function
+    twin._set_uuid(f"checked {original._uuid}")
     twins[source] = twin
     return twin
 
