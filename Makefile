@@ -5,8 +5,9 @@
 #   make test ARGS="tests/world -x"     with further options of pytest
 #   make test PYTHON=python3.13         with another Python, 3.11 or later, in a new .venv
 #   make lint                           checks format, style and types
+#   make instructions                   counts what a step costs
 
-.PHONY: help reproduce test lint
+.PHONY: help reproduce test lint instructions
 
 PYTHON := python3 python3.13 python3.12 python3.11
 ARGS :=
@@ -31,6 +32,9 @@ lint: .venv/.installed-for-tests
 	@.venv/bin/ruff check
 	@.venv/bin/ruff format --check
 	@PYRIGHT_PYTHON_IGNORE_WARNINGS=1 .venv/bin/pyright --warnings
+
+instructions: .venv/.installed
+	@.venv/bin/python bench/instructions.py
 
 .venv/.installed: requirements.txt pyproject.toml
 	@for python in $(PYTHON); do \

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 BENCH = Path(__file__).parents[1] / "bench"
@@ -28,7 +28,6 @@ with_animat, with_numba, with_numpy = (
 POSITIVE = st.floats(1e-6, 1e9)
 
 
-@settings(max_examples=50, deadline=None)
 @given(POSITIVE, POSITIVE, st.booleans())
 def test_a_target_is_met_or_says_how_far_it_is(value, limit, at_least):
     target = figures.Target(value, limit, at_least)
@@ -43,7 +42,6 @@ def test_a_target_of_none_tells_how_many_there_are():
     assert str(figures.Target(7, 0, at_least=False)) == "at most 0: 7 too much"
 
 
-@settings(max_examples=50, deadline=None)
 @given(st.floats(-1e12, 1e12, allow_subnormal=False))
 def test_a_cell_keeps_three_digits(value):
     assert float(figures.cell(value).replace(",", "")) == pytest.approx(value, rel=0.0051)
@@ -73,7 +71,6 @@ def test_a_table_is_written_for_a_page_and_for_a_terminal():
     ]
 
 
-@settings(max_examples=50, deadline=None)
 @given(st.lists(st.text(), unique=True, min_size=1, max_size=5), st.integers(0, 4))
 def test_turns_go_forwards_and_backwards(names, repeat):
     called = []
@@ -107,6 +104,7 @@ def said_by(program: str, *options: str, folder: Path) -> dict:
     return said
 
 
+@pytest.mark.long
 def test_all_that_is_measured_is_told_with_its_targets(tmp_path):
     programs = ("speed", "threads", "startup", "parts")
     said = said_by("all.py", "--tiny", "--markdown", "--only", *programs, folder=tmp_path)
@@ -135,7 +133,6 @@ def test_all_that_is_measured_is_told_with_its_targets(tmp_path):
     assert sum(row["alone, ns a step"] for row in whole) == pytest.approx(step)
 
 
-@settings(max_examples=50, deadline=None)
 @given(st.integers(0, 30), st.integers(0, 100))
 def test_the_robot_can_pass_everywhere_and_starts_clear(count, seed):
     placed = work.obstacles(count, seed)
@@ -168,7 +165,6 @@ def test_robots_wander_and_touch_nothing(start):
     assert len(been) > 300
 
 
-@settings(max_examples=50, deadline=None)
 @given(st.floats(-math.pi, math.pi), st.floats(-1.4, 1.4))
 def test_a_robot_is_stopped_by_what_it_touches(bearing, aside):
     """Both hand-written loops stop a robot that goes at an obstacle, and let it go away."""
@@ -194,7 +190,6 @@ def positions(robots) -> np.ndarray:
     return robots.states[:, :2].copy()
 
 
-@settings(max_examples=50, deadline=None)
 @given(st.integers(0, 1000))
 def test_rays_end_where_geometry_says(seed):
     """Both hand-written loops see what shapely sees, but for the noise of 1 %."""
@@ -223,6 +218,7 @@ def test_rays_end_where_geometry_says(seed):
         assert of_numba == pytest.approx(free, rel=0.011, abs=0.1)
 
 
+@pytest.mark.long
 def test_simulators_are_compared_in_one_table(tmp_path):
     names = ("animat, rays", "Numba loop", "NumPy loop")
     options = ("--venv", str(tmp_path), "--tiny", "--repeat", "1", "--obstacles", "0", "30")

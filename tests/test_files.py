@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from animat.files import whole, write_whole
+from animat.files import RunError, whole, write_whole
 from animat.settings import SettingsError
 
 
@@ -24,7 +24,7 @@ def test_a_file_that_cannot_be_finished_leaves_the_old_one(tmp_path, monkeypatch
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(SettingsError, match=r"a\.txt: cannot be written: No space"):
+    with pytest.raises(RunError, match=r"a\.txt: cannot be written: No space"):
         write_whole(path, b"two")
     assert path.read_bytes() == b"one"
     assert [file.name for file in tmp_path.iterdir()] == ["a.txt"]

@@ -149,6 +149,7 @@ def test_both_a_loss_and_a_gain_are_told(instructions):
     assert not within
 
 
+@pytest.mark.long
 def test_a_slowed_build_is_found(tmp_path, instructions):
     """A copy of the package with a few operations more in every step, which change nothing."""
     package = shutil.copytree(

@@ -4,6 +4,8 @@ import io
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
+from types import SimpleNamespace
 
 import pytest
 
@@ -151,3 +153,41 @@ def test_bars_go_away_with_an_error(monkeypatch):
         interrupted()
     # The cursor is shown again.
     assert terminal.getvalue().rstrip().endswith("\x1b[?25h")
+
+
+class Widget(nullcontext):
+    def clear_output(self, wait):
+        pass
+
+
+@pytest.fixture
+def shown(monkeypatch):
+    """What a notebook is given to show."""
+    shown = []
+    shell = SimpleNamespace(kernel=None)
+    modules = {
+        "IPython": SimpleNamespace(get_ipython=lambda: shell),
+        "IPython.display": SimpleNamespace(display=shown.append),
+        "ipywidgets": SimpleNamespace(Output=Widget),
+    }
+    for name, module in modules.items():
+        monkeypatch.setitem(sys.modules, name, module)
+    return shown
+
+
+def test_bars_are_shown_in_a_notebook_and_nothing_is_printed(shown, monkeypatch, capsys):
+    monkeypatch.setattr(progress, "find_spec", lambda name: name)
+    with telling() as tell:
+        tell("Lives", 400, 1_000)
+        tell("Lives", 600, 1_000)
+    assert any(isinstance(each, Widget) for each in shown)
+    assert "Lives" in str([getattr(each, "html", "") for each in shown])
+    assert capsys.readouterr() == ("", "")
+
+
+def test_a_notebook_that_cannot_show_bars_is_told_in_lines(shown, monkeypatch, capsys):
+    monkeypatch.setattr(progress, "find_spec", lambda name: None)
+    with telling() as tell:
+        tell("Lives", 1_000, 1_000)
+    assert capsys.readouterr().err == "Lives: 1,000 of 1,000, 0 s\n"
+    assert not shown

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from animat.settings import Settings, SettingsError, explain, nearest, read_toml
+from animat.settings import Settings, SettingsError, nearest, read_toml
 
 
 class Variable(Settings):
@@ -90,7 +90,6 @@ def test_a_good_file_is_read_whole(tmp_path):
     assert read(tmp_path, b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode()) == expected
 
 
-@settings(deadline=None)
 @given(value=st.floats(allow_nan=False, allow_infinity=False))
 def test_numbers_keep_every_bit(tmp_path_factory, value):
     class Number(Settings):
@@ -102,7 +101,7 @@ def test_numbers_keep_every_bit(tmp_path_factory, value):
 
 
 def test_settings_cannot_be_changed():
-    with pytest.raises(ValidationError, match="frozen"):
+    with pytest.raises(SettingsError, match="frozen"):
         Mind().agent = "AF"  # pyright: ignore[reportAttributeAccessIssue]
 
 
@@ -231,11 +230,10 @@ def test_what_cannot_be_opened_is_refused(tmp_path):
 
 def test_python_gives_the_same_lines(tmp_path):
     data = tomllib.loads("seed = -1\n[mind]\nagent = 'LERNING'\n[mind.variables.n]\nrat = 1\n")
-    with pytest.raises(ValidationError) as caught:
+    with pytest.raises(SettingsError) as caught:
         Study(**data)
-    error = explain(caught.value, Study, "Study")
     file = refused(tmp_path, "seed = -1\nmind = {agent='LERNING', variables.n.rat=1}")
-    assert error.problems == tuple(f"Study: {line}" for line in file)
+    assert list(caught.value.problems) == file
     assert len(file) == 3
 
 
@@ -278,7 +276,6 @@ def places(data: object, here: tuple = ()) -> list[tuple]:
     return found
 
 
-@settings(max_examples=100, deadline=None)
 @given(data=st.data())
 def test_a_changed_value_is_either_read_or_named(tmp_path_factory, data):
     """The key of a refusal is where the value was put, above it, or within it."""
@@ -301,7 +298,6 @@ def test_a_changed_value_is_either_read_or_named(tmp_path_factory, data):
             assert "Input should" not in line
 
 
-@settings(max_examples=100, deadline=None)
 @given(data=st.data())
 def test_a_misspelt_key_is_never_ignored(tmp_path_factory, data):
     content = tomllib.loads(GOOD)
@@ -322,7 +318,6 @@ def test_a_misspelt_key_is_never_ignored(tmp_path_factory, data):
         assert f'unknown key; did you mean "{place[-1]}"?' in "\n".join(lines)
 
 
-@settings(max_examples=150, deadline=None)
 @given(
     content=st.binary(max_size=200)
     | st.text(max_size=200).map(lambda t: t.encode("utf-8", "replace"))

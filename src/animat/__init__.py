@@ -13,14 +13,16 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from animat.errors import Error, SettingsError
     from animat.life.life import Life, Moment, live
     from animat.life.lives import Lives, live_many
     from animat.life.recording import Recording
     from animat.mind.mind import Behaviour, Drive, Learning, Mind, VariableChange
     from animat.mind.networks import Networks
     from animat.robot.khepera import Khepera
-    from animat.settings import SettingsError
+    from animat.study.from_python import StudyRun, run
     from animat.study.one_life import record
+    from animat.version import __version__ as __version__
     from animat.world.arena import Arena
     from animat.world.layout import Layout, Placement
     from animat.world.objects import TABLE_1, ObjectType
@@ -30,6 +32,7 @@ _HOMES = {
     "Arena": "animat.world.arena",
     "Behaviour": "animat.mind.mind",
     "Drive": "animat.mind.mind",
+    "Error": "animat.errors",
     "Khepera": "animat.robot.khepera",
     "Layout": "animat.world.layout",
     "Learning": "animat.mind.mind",
@@ -41,13 +44,16 @@ _HOMES = {
     "ObjectType": "animat.world.objects",
     "Placement": "animat.world.layout",
     "Recording": "animat.life.recording",
-    "SettingsError": "animat.settings",
+    "SettingsError": "animat.errors",
+    "StudyRun": "animat.study.from_python",
     "TABLE_1": "animat.world.objects",
     "VariableChange": "animat.mind.mind",
     "World": "animat.world.world",
+    "__version__": "animat.version",
     "live": "animat.life.life",
     "live_many": "animat.life.lives",
     "record": "animat.study.one_life",
+    "run": "animat.study.from_python",
 }
 
 __all__ = [
@@ -55,6 +61,7 @@ __all__ = [
     "Arena",
     "Behaviour",
     "Drive",
+    "Error",
     "Khepera",
     "Layout",
     "Learning",
@@ -67,11 +74,13 @@ __all__ = [
     "Placement",
     "Recording",
     "SettingsError",
+    "StudyRun",
     "VariableChange",
     "World",
     "live",
     "live_many",
     "record",
+    "run",
 ]
 
 

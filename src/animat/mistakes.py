@@ -195,8 +195,13 @@ def shown(value: Any) -> str:
     """Return ' = VALUE', or nothing where the value is a table or a list."""
     if isinstance(value, Mapping | list | tuple | set | BaseModel):
         return ""
+    return f" = {brief(value)}"
+
+
+def brief(value: Any) -> str:
+    """Return a value as `plain` does, cut short where it is long."""
     text = plain(value)
-    return " = " + (text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 3] + "...")
+    return text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 3] + "..."
 
 
 def plain(value: Any) -> str:
@@ -204,7 +209,11 @@ def plain(value: Any) -> str:
     if isinstance(value, bool | str):
         text = json.dumps(value, ensure_ascii=False)
     else:
-        text = " ".join(str(value).split())
+        try:
+            text = " ".join(str(value).split())
+        except Exception:
+            # A whole number of thousands of digits, or an object that does not tell what it is.
+            text = f"a value of type {type(value).__name__}"
     return printable(text)
 
 

@@ -1,4 +1,4 @@
-"""Telling how far long work is: bars on a terminal, plain lines elsewhere."""
+"""Telling how far long work is: bars on a terminal or in a notebook, plain lines elsewhere."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from threading import Lock
 from typing import Protocol
 
@@ -30,7 +31,8 @@ class Telling(Protocol):
 @contextmanager
 def telling() -> Iterator[Telling]:
     """Yield what long work reports to; threads may call it at once."""
-    if not sys.stderr.isatty():
+    notebook = _in_notebook()
+    if not notebook and not sys.stderr.isatty():
         yield _plain_lines()
         return
     from rich.console import Console
@@ -51,7 +53,7 @@ def telling() -> Iterator[Telling]:
             note = task.fields["note"]
             return Text(note) if note else Text("left ") + super().render(task)
 
-    console = Console(stderr=True)
+    console = Console(stderr=True, force_jupyter=notebook)
     bars = Progress(
         TextColumn("{task.description}"),
         BarColumn(bar_width=16),
@@ -72,6 +74,13 @@ def telling() -> Iterator[Telling]:
 
     with bars:
         yield tell
+
+
+def _in_notebook() -> bool:
+    """Tell whether this is a notebook in which bars can be drawn: rich needs ipywidgets there."""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython is not None else None
+    return hasattr(shell, "kernel") and find_spec("ipywidgets") is not None
 
 
 def _plain_lines() -> Telling:

@@ -7,15 +7,18 @@ The same lines come from a TOML file (`read_toml`) and from Python (`explain`).
 from __future__ import annotations
 
 import json
+import stat
 import tomllib
 from collections.abc import Iterator
 from datetime import date, time
 from pathlib import Path
-from typing import IO, Any, TypeVar
+from typing import IO, TYPE_CHECKING, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from animat.mistakes import mistakes, nearest, printable, written
+from animat.arguments import DEEPEST, as_python
+from animat.errors import SettingsError
+from animat.mistakes import mistakes, nearest, written
 
 __all__ = [
     "Settings",
@@ -32,9 +35,6 @@ __all__ = [
 LARGEST_FILE = 1_000_000
 """Bytes; a settings file is written by hand, so a larger one is some other file."""
 
-DEEPEST = 32
-"""Tables and lists inside one another; no settings come near it."""
-
 Key = tuple[str | int, ...]
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -43,23 +43,31 @@ Model = TypeVar("Model", bound=BaseModel)
 class Settings(BaseModel):
     """A group of settings: frozen, no unknown keys, no coercion (1 is not true), all finite.
 
-    A validator that finds several mistakes raises ValueError with a line for each.
+    Numbers of NumPy's count as Python's own. A validator that finds several mistakes raises
+    ValueError with a line for each.
+
+    Raises:
+        SettingsError: with a line for each mistake.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
+    def __init__(self, /, **settings: Any) -> None:
+        """Check the settings. Raises SettingsError."""
+        try:
+            super().__init__(**as_python(settings))
+        except ValidationError as error:
+            raise SettingsError(*mistakes(error, type(self))) from None
 
-class SettingsError(ValueError):
-    """Everything that is wrong with some settings; `str` gives a line for each mistake."""
+    # Inner settings go on to be checked by pydantic itself, which then knows where they stand.
+    __init__.__pydantic_base_init__ = True  # pyright: ignore[reportFunctionMemberAccess]
 
-    def __init__(self, *problems: str) -> None:
-        """Keep the problems, one line each."""
-        self.problems = tuple(printable(problem) for problem in problems)
-        super().__init__(*self.problems)
+    if not TYPE_CHECKING:
 
-    def __str__(self) -> str:
-        """Return the problems, one line each."""
-        return "\n".join(self.problems)
+        def __setattr__(self, name: str, value: Any) -> None:
+            """Refuse to change settings, which are shared. Raises SettingsError."""
+            kind = type(self).__name__
+            raise SettingsError(f"{kind}.{name}: settings are frozen; make a new {kind}")
 
 
 def explain(error: ValidationError, model: type[BaseModel], where: str) -> SettingsError:
@@ -117,24 +125,28 @@ def values_within(value: Any, key: Key = ()) -> Iterator[tuple[Key, Any]]:
 def validated(data: dict[str, Any], model: type[Model]) -> Model:
     """Return what TOML says as settings of `model`. Raises pydantic's ValidationError."""
     # By way of JSON because there a list may become a tuple and a string a path, even strictly.
-    return model.model_validate_json(json.dumps(data))
+    return model.__pydantic_validator__.validate_json(json.dumps(data))
 
 
 def opened(path: Path, what: str) -> IO[bytes]:
-    """Return a file that is there to be read; `what` it should be is told of a directory.
+    """Return a regular file that is there to be read; `what` it should be is told of any other.
 
-    Raises SettingsError if it cannot be opened.
+    A pipe, a socket or a device may never end, and opening one may wait for ever. Raises
+    SettingsError if it cannot be opened.
     """
     try:
-        return path.open("rb")
+        mode = path.stat().st_mode
+        file = path.open("rb") if stat.S_ISREG(mode) else None
     except FileNotFoundError:
         raise SettingsError(f"{path}: no such file") from None
-    except IsADirectoryError:
-        raise SettingsError(f"{path}: is a directory, not a {what}") from None
     except OSError as error:
         raise SettingsError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError as error:
         raise SettingsError(f"{str(path)!r}: is no path: {error}") from None
+    if file is None:
+        kind = "directory" if stat.S_ISDIR(mode) else "special file"
+        raise SettingsError(f"{path}: is a {kind}, not a {what}")
+    return file
 
 
 def _text(path: Path, largest: int) -> str:

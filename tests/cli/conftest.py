@@ -20,8 +20,7 @@ class Said(NamedTuple):
 
 
 @pytest.fixture
-def animat(monkeypatch, capsys, tmp_path) -> Callable[..., Said]:
-    monkeypatch.chdir(tmp_path)
+def animat(commanded, monkeypatch, capsys) -> Callable[..., Said]:
 
     def run(*arguments: str) -> Said:
         monkeypatch.setattr(sys, "argv", ["animat", *arguments])

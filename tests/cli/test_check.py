@@ -105,14 +105,11 @@ def test_what_is_no_study_is_refused(animat, tmp_path):
     assert animat("check").code == 2
 
 
-def test_a_function_that_raises_is_told_of(animat, tmp_path):
-    (tmp_path / "own.py").write_text(
-        "def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):\n"
-        "    if luck_a >= 0.0:\n"
-        '        raise ValueError("lost")\n'
-        "    return speed, speed\n"
+def test_a_function_that_raises_is_told_of(animat, tmp_path, lost):
+    (tmp_path / "own.py").write_text(lost)
+    (tmp_path / "fails.toml").write_text(
+        'name = "f"\nsteps = 9\n[mind]\nwander = "own.py:walk"\nturn_speed = 1\n'
     )
-    (tmp_path / "fails.toml").write_text('name = "f"\nsteps = 9\n[mind]\nwander = "own.py:walk"\n')
     said = animat("check", "fails.toml")
     assert said.code == 0
     last = said.out.splitlines()[-1]

@@ -5,17 +5,18 @@ from __future__ import annotations
 import json
 import os
 import signal
-import subprocess
-import sys
-import time
+from contextlib import nullcontext
 from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
 
+from animat import progress
+from animat.study.running.interruption import ASKED
 from animat.study.store import lock
 from animat.study.store.lock import hold
 from animat.study.store.results import Results
+from animat.study.store.status import status
 
 STUDY = """
 name = "tiny"
@@ -30,13 +31,6 @@ steps = 300
 [[design.exclude]]
 when = { "mind.agent" = "AF", "mind.gate" = "always" }
 why = "nobody asked for it"
-"""
-
-OWN = """
-def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
-    if luck_a < 0.002:
-        raise ValueError("lost")
-    return speed, speed
 """
 
 
@@ -80,7 +74,13 @@ def test_a_study_is_lived_told_of_looked_at_and_exported(animat, file, tmp_path)
     part.write_bytes(part.read_bytes()[:-1])
     said = animat("verify", "results/tiny")
     assert (said.code, said.out) == (1, "")
-    assert said.err.splitlines()[-1] == f"animat: {part}: is torn"
+    assert said.err.splitlines()[-1].startswith(f"animat: {part}: is torn; take it away")
+    said = animat("export", "results/tiny", "--to", "csv", "--out", "again.csv")
+    assert (said.code, said.out) == (2, "")
+    assert said.err.startswith(f"animat: {part}: is torn; take it away")
+    assert not Path("again.csv").exists()
+    said = animat("status", "results/tiny")
+    assert any(line.startswith(f"{part}: is torn") for line in said.out.splitlines())
     assert animat("run", "tiny.toml").code == 0
     assert animat("verify", "results/tiny").code == 0
 
@@ -141,8 +141,8 @@ def test_another_study_is_refused_with_the_difference(animat, file):
     assert animat("run", "tiny.toml", "--out", "another").code == 0
 
 
-def test_lives_that_fail_stop_no_others_and_end_in_code_1(animat, file, tmp_path):
-    (tmp_path / "own.py").write_text(OWN)
+def test_lives_that_fail_stop_no_others_and_end_in_code_1(animat, file, tmp_path, lost):
+    (tmp_path / "own.py").write_text(lost)
     said = animat("run", "tiny.toml", "--set", 'mind.wander="own.py:walk"')
     lives = Results(Path("results/tiny")).lives()
     failed = [row for row in lives.to_pylist() if row["error"]]
@@ -175,52 +175,31 @@ def heeded():
     signal.signal(signal.SIGINT, before)
 
 
-def started(tmp_path: Path, *changes: str) -> subprocess.Popen:
-    run = subprocess.Popen(
-        [sys.executable, "-m", "animat", "run", "tiny.toml", *changes],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    while not any((tmp_path / "results" / "tiny" / "lives").glob("part-*")):
-        assert run.poll() is None
-        time.sleep(0.01)
-    return run
-
-
 @pytest.mark.usefixtures("heeded")
 def test_ctrl_c_finishes_what_is_under_way_and_says_how_to_go_on(animat, file, tmp_path):
-    # Many lives, so that it is not over before it is interrupted.
-    many = ("--set", "lives=20000", "--set", "steps=60")
-    run = started(tmp_path, *many)
-    assert "run by process " in animat("status", "results/tiny").out
-    run.send_signal(signal.SIGINT)
-    _, err = run.communicate(timeout=60)
-    assert run.returncode == 130
+    many = ("--set", "lives=800", "--set", "steps=60", "--threads", "1")
+    told = []
+
+    def tell(task: str, done: int, total: int, note: str = "") -> None:
+        if task == "Lives" and done and not told:
+            told.extend(status(Results(tmp_path / "results" / "tiny")))
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(progress, "telling", lambda: nullcontext(tell))
+        said = animat("run", "tiny.toml", *many)
+    assert said.code == 130
+    assert told[-1].startswith("run by process ")
     parts = list((tmp_path / "results" / "tiny" / "lives").glob("part-*"))
     rows = sum(pq.read_metadata(part).num_rows for part in parts)
-    assert 0 < rows < 60_000
-    assert err.endswith(
-        f"animat: {rows:,} of 60,000 lives are in results/tiny; the same command goes on with the"
-        " others\nanimat: interrupted; nothing is half-written\n"
+    assert 0 < rows < 2_400
+    assert said.err.endswith(
+        f"{ASKED}animat: {rows:,} of 2,400 lives are in results/tiny; the same command goes on with"
+        " the others\nanimat: interrupted; nothing is half-written\n"
     )
     assert animat("status", "results/tiny").out.splitlines()[-1] == "not run by anybody"
     assert animat("run", "tiny.toml", *many).code == 0
-    assert Results(Path("results/tiny")).progress == (60_000, 60_000)
-
-
-@pytest.mark.usefixtures("heeded")
-def test_ctrl_c_twice_stops_at_once(file, tmp_path):
-    run = started(tmp_path, "--set", "steps=4000000", "--set", "mind.death=false")
-    run.send_signal(signal.SIGINT)
-    time.sleep(0.05)
-    run.send_signal(signal.SIGINT)
-    _, err = run.communicate(timeout=60)
-    assert run.returncode == 130
-    assert err.endswith("animat: interrupted; nothing is half-written\n")
-    assert "Traceback" not in err
+    assert Results(Path("results/tiny")).progress == (2_400, 2_400)
 
 
 @pytest.mark.parametrize(

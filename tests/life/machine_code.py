@@ -31,7 +31,7 @@ from animat.mind.mind import Mind
 from animat.world.world import World
 
 SCRIPT = Path(__file__)
-EXAMPLE = SCRIPT.parents[2] / "docs" / "examples" / "product.py"
+EXAMPLES = SCRIPT.parents[2] / "docs" / "examples"
 
 WRAPPER = re.compile(r"_ZN7cpython|cfunc\.")
 """How the names of the functions begin by which Python calls a kernel; they unpack Python objects,
@@ -74,8 +74,11 @@ def child() -> None:
     setting = bring_together(Mind(), world)
     states, _ = setting.begin(1, np.arange(2, dtype=np.uint64))
     likelihoods(setting, states)
-    for mind in (Mind(), Mind(selector=f"{EXAMPLE}:product")):
-        for record in (None, "all"):
+    # With functions that other tests live by, too, as they are compiled once for all.
+    product = Mind(selector=f"{EXAMPLES}/product.py:product")
+    deadband = Mind(drive_function=f"{EXAMPLES}/deadband.py:deadband")
+    for record, own in ((None, product), ("all", deadband)):
+        for mind in (Mind(), own):
             life = live(mind, world, steps=10, record=record)
             life.networks.likelihoods(dict.fromkeys(world.feature_names, 0.0))
     found = {name: intermediate_codes(kernel) for name, kernel in kernels().items()}

@@ -82,7 +82,7 @@ def test_a_setting_comes_back_whole():
     assert (head.made, head.first, head.last, head.steps, head.every) == (MADE, 0, 30, 100, 7)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=settings().max_examples // 2)
 @given(weights=st.lists(st.floats(-1e300, 1e300), min_size=27, max_size=27))
 def test_networks_come_back_to_the_bit(small, weights):
     behaviours, features = ("eat", "shelter", "interact"), ("shape", "size")

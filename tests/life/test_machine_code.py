@@ -15,6 +15,8 @@ from animat.numerics.compiled import OPTIONS
 
 from . import machine_code
 
+pytestmark = pytest.mark.long
+
 HERE = Path(__file__).parent
 
 STEPS = ("animat.life.slices.live_slice", "animat.life.slices.live_recorded")

@@ -67,9 +67,9 @@ def still(value, low, high, rate, factor):
     return value + rate
 
 
-def fixed(values, changes, set_points, senses, a, b, out):
+def echo(values, changes, set_points, senses, a, b, out):
     for d in range(len(out)):
-        out[d] = 0.25 + 0.125 * d
+        out[d] = values[d]
 
 
 def second(drives, likelihoods, serves, luck):
@@ -97,7 +97,7 @@ def own(lived):
     return lived(
         agent="LEARNING",
         variables={"stamina": rising, "nutrition": {"law": still, "kind": "deficit"}},
-        drive_function=fixed,
+        drive_function=echo,
         selector=second,
         wander=circle,
         learning={"estimator": sure, "learner": note, "threshold": 0.0},
@@ -113,9 +113,11 @@ def test_a_law_of_ones_own_is_followed(own):
 
 
 def test_mind_drive_function(own):
-    for drive, value in (("hunger", 0.25), ("fatigue", 0.375), ("curiosity", 0.5)):
-        assert (own[drive] == value).all()
-    assert set(own["winning_drive"]) == {"curiosity"}
+    drives = {"hunger": "nutrition", "fatigue": "stamina", "curiosity": "restlessness"}
+    for drive, variable in drives.items():
+        assert (own[drive] == own[variable]).all()
+    strongest = np.argmax([own[drive] for drive in drives], axis=0)
+    assert (own["winning_drive"] == np.array(list(drives))[strongest]).all()
 
 
 def test_a_selector_of_ones_own_chooses(own):
@@ -137,30 +139,14 @@ def test_learning_estimator(own):
     assert own["likelihood_shelter"][met[0]] == 0.625 + weights[1, 0]
 
 
-def test_learning_learner(lived, affording):
-    """The drives of `fixed` never vary, so this one learns by drives that do."""
-    c = lived(
-        agent="LEARNING",
-        drive_function=echo,
-        selector=second,
-        wander=circle,
-        variables={"stamina": {"law": still, "kind": "excess"}},
-        learning={"estimator": sure, "learner": note},
-        encounter_range=150.0,
-        steps=6_000,
-    )
-    trained = int(c.happened("trained").sum())
-    birth = c.life.setting.begin(4, np.zeros(1, np.uint64))[0]["weights"][0]
-    end = c.life.state.weights
+def test_learning_learner(own):
+    trained = int(own.happened("trained").sum())
+    birth = own.life.setting.begin(4, np.zeros(1, np.uint64))[0]["weights"][0]
+    end = own.life.state.weights
     assert trained > 0
     assert end[1, 0] == 0.0625
     assert end[1, 1] == pytest.approx(birth[1, 1] + trained)
     assert np.array_equal(end[[0, 2]], birth[[0, 2]])
-
-
-def echo(values, changes, set_points, senses, a, b, out):
-    for d in range(len(out)):
-        out[d] = values[d]
 
 
 def test_the_search_of_ours_does_the_same_whatever_is_read_in_the_dark(spared):

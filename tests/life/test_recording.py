@@ -206,7 +206,6 @@ COLUMNS = {
 }
 
 
-@settings(deadline=None, max_examples=40)
 @given(step=st.integers(0, STEPS - 1), column=st.sampled_from(sorted(COLUMNS)))
 def test_a_step_that_differs_is_found_whatever_differs_in_it(known, step, column):
     was = known.trace.slice(step, 1).to_pylist()[0][column]
@@ -225,7 +224,7 @@ def test_a_step_that_differs_is_found_whatever_differs_in_it(known, step, column
     )
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=settings().max_examples // 2)
 @given(kept=st.integers(0, STEPS // 100 - 1), data=st.data())
 def test_a_state_that_differs_is_found_though_the_trace_does_not(known, kept, data):
     step = 100 * kept
@@ -311,7 +310,6 @@ def test_a_life_that_ends_elsewhere_is_another(small, tmp_path):
 # --- refusals -----------------------------------------------------------------------------------
 
 
-@settings(deadline=None)
 @given(data=st.data())
 def test_a_byte_that_is_changed_is_found(known, data):
     content = known.path.read_bytes()
@@ -333,7 +331,6 @@ def test_a_byte_that_is_changed_is_found(known, data):
         assert line.endswith(": steps 256 to 511")
 
 
-@settings(deadline=None)
 @given(data=st.data())
 def test_a_file_that_is_cut_short_is_refused(known, data):
     content = known.path.read_bytes()

@@ -72,7 +72,8 @@ def test_every_column_has_its_type(life):
     words = pa.dictionary(pa.int32(), pa.string())
     assert all(schema.field(name).type == words for name in word)
     assert life.trace["step"].to_pylist() == list(range(STEPS))
-    assert [n for n in schema.names if life.trace[n].null_count] == ["object"]
+    maybe = {"object", *(f"likelihood_{b}" for b in BEHAVIOURS)}
+    assert "object" in {n for n in schema.names if life.trace[n].null_count} <= maybe
 
 
 @pytest.mark.parametrize("every", [1, 2, 7, 1_000])
@@ -117,6 +118,33 @@ def test_the_step_of_a_death_is_the_last_row_of_every_recording(small, caring_fo
     assert rows["every:50"] == rows["last:7"] == rows["all"]
     steps = traces["every:50"]["step"].to_pylist()
     assert steps[:-1] == list(range(0, rows["all"]["step"], 50))
+
+
+@pytest.mark.parametrize("record", ["all", "every:50", "last:7"])
+def test_the_row_of_a_death_by_an_act_holds_the_values_that_killed(record, small):
+    life = live(Mind(failure_effect=0.9), small, seed=1, record=record)
+    assert life.death is not None
+    assert life.death.endswith("failure")
+    last = life.trace.to_pylist()[-1]
+    assert [last[name] for name in KINDS] == life.state["values"].tolist()
+    died = life.summary["death_variable"]
+    assert not 0.0 <= last[died] <= 1.0
+
+
+def test_a_likelihood_is_null_until_its_network_was_asked(small):
+    """And a network that says 0 has been asked."""
+    mind = Mind(agent="ORACLE", death=False, gate="always")
+    life = live(mind, small, seed=2, steps=STEPS, record="all")
+    events = life.trace["event"].to_pylist()
+    nulls = 0
+    for name in BEHAVIOURS:
+        said = life.trace[f"likelihood_{name}"].to_pylist()
+        first = next(step for step, value in enumerate(said) if value is not None)
+        assert "encounter" in events[first]
+        assert None not in said[first:]
+        nulls += first
+    assert nulls > 0
+    assert 0.0 in life.trace["likelihood_eat"].to_pylist()
 
 
 def test_parts_in_which_nothing_happens_fit_with_the_others(small):

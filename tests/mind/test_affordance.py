@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from sklearn.neural_network import MLPClassifier
 
@@ -67,7 +67,6 @@ def networks(draw):
     return rng.normal(0.0, 1.5, features), weights, hidden, biases
 
 
-@settings(max_examples=100, deadline=None)
 @given(networks())
 def test_the_output_is_that_of_matrices(network):
     inputs, weights, hidden, _ = network
@@ -77,7 +76,6 @@ def test_the_output_is_that_of_matrices(network):
     np.testing.assert_allclose(room, units, rtol=1e-13)
 
 
-@settings(max_examples=100, deadline=None)
 @given(networks(), st.floats(0, 1), st.floats(0.01, 1.0), st.integers(1, 20))
 def test_training_is_that_of_matrices(network, target, rate, cycles):
     inputs, weights, hidden, biases = network
@@ -88,7 +86,6 @@ def test_training_is_that_of_matrices(network, target, rate, cycles):
     np.testing.assert_allclose(weights, wanted, rtol=1e-11, atol=1e-13)
 
 
-@settings(max_examples=50, deadline=None)
 @given(networks(), st.floats(0, 1))
 def test_one_cycle_goes_down_the_gradient_of_half_the_squared_error(network, target):
     inputs, weights, hidden, biases = network
@@ -110,7 +107,6 @@ def test_one_cycle_goes_down_the_gradient_of_half_the_squared_error(network, tar
     np.testing.assert_allclose((weights - trained) / 0.25, gradient, atol=1e-8)
 
 
-@settings(max_examples=25, deadline=None)
 @given(networks(), st.integers(0, 1))
 def test_output_and_gradient_agree_with_scikit_learn(network, target):
     """scikit-learn descends the log-loss, whose gradient lacks the factor output (1 - output)."""
@@ -140,7 +136,6 @@ def test_output_and_gradient_agree_with_scikit_learn(network, target):
         )
 
 
-@settings(max_examples=50, deadline=None)
 @given(networks(), st.floats(0, 1))
 def test_without_biases_their_places_stay_empty(network, target):
     inputs, weights, hidden, biases = network

@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -130,7 +130,6 @@ def turned(heading, motors):
     return heading + 0.02 * (motors[1] - motors[0]) / TURN
 
 
-@settings(max_examples=200, deadline=None)
 @given(st.floats(-math.pi, math.pi))
 def test_approaching_turns_the_short_way_and_goes(heading):
     ahead, aside = seen_from(heading)
@@ -144,7 +143,6 @@ def test_approaching_turns_the_short_way_and_goes(heading):
         assert abs(turned(heading, motors)) < abs(heading)
 
 
-@settings(max_examples=200, deadline=None)
 @given(st.floats(-math.pi, math.pi))
 def test_leaving_turns_away_until_the_point_lies_behind(heading):
     ahead, aside = seen_from(heading)
@@ -155,7 +153,6 @@ def test_leaving_turns_away_until_the_point_lies_behind(heading):
         assert abs(turned(heading, motors)) > abs(heading)
 
 
-@settings(max_examples=50, deadline=None)
 @given(st.floats(-math.pi, math.pi))
 def test_turning_to_and_from_a_point_comes_to_an_end(heading):
     steps = 0

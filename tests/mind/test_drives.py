@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
@@ -27,7 +27,6 @@ def needs(draw):
     return *rows, senses, *tables
 
 
-@settings(max_examples=60, deadline=None)
 @given(needs())
 @pytest.mark.parametrize(
     ("function", "shaped"),
@@ -114,7 +113,6 @@ def test_a_drive_function_of_ones_own_is_used():
     np.testing.assert_allclose(out, [0.0, 0.3, 0.0])
 
 
-@settings(max_examples=100, deadline=None)
 @given(st.lists(st.integers(-3, 3), min_size=1, max_size=6))
 def test_the_strongest_drive_is_the_first_of_equal_ones(drives):
     assert strongest(np.array(drives, float)) == np.argmax(drives)

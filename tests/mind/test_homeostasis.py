@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.mind.functions import unused_law
@@ -83,7 +83,6 @@ def test_a_million_steps_follow_the_closed_form(law, start, rate):
     assert values[0] == pytest.approx(closed_form(law, start, 0.0, 1.0, rate, 10**6), rel=1e-9)
 
 
-@settings(max_examples=60, deadline=None)
 @given(
     law=st.sampled_from(LAWS),
     low=st.floats(-1.0, 1.0),

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -31,7 +31,6 @@ def choices(draw):
     return np.array(drives, float), np.array(likelihoods, float), np.array(serves)
 
 
-@settings(max_examples=200, deadline=None)
 @given(choices(), st.floats(0, 1, exclude_max=True))
 def test_the_winner_takes_all(choice, luck):
     drives, likelihoods, serves = choice
@@ -47,7 +46,6 @@ def test_of_equal_drives_the_first_wins_whatever_the_order_of_the_behaviours():
     assert winner_take_all(drives, np.ones(2), np.array([0, 2]), 0.9) == -1
 
 
-@settings(max_examples=200, deadline=None)
 @given(choices(), st.floats(0, 1, exclude_max=True))
 def test_affordance_times_drive_takes_the_largest_product(choice, luck):
     drives, likelihoods, serves = choice

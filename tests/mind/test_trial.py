@@ -6,13 +6,13 @@ import types
 
 import numpy as np
 import pytest
+from animat.numerics.fingerprint import fingerprint
 
 from animat.life.setting import bring_together
 from animat.mind import trial
 from animat.mind.functions import SIGNATURES, FunctionError, checked_twin, resolve
 from animat.mind.mind import Mind
 from animat.numerics.compiled import compiled
-from animat.numerics.fingerprint import fingerprint
 from animat.world.world import World
 
 LAST = {

@@ -52,11 +52,15 @@ def whole(x):
 OWN = """
 from animat.numerics.compiled import compiled
 import theirs
+import deep.params
+import numpy
 from theirs import STEEPNESS, part
+
+RATES = numpy.loadtxt("rates.txt")
 
 @compiled
 def other(x):
-    return 1.0 + STEEPNESS[0] * x + theirs.whole(x)
+    return 1.0 + STEEPNESS[0] * x + theirs.whole(x) + RATES[1] + deep.params.WHICH
 
 @compiled
 def own(x):
@@ -99,26 +103,30 @@ class Compilations(event.Listener):
 with event.install_listener("numba:compile", Compilations()):
     import mine
     from animat.life.engine import run
-    own = eval(sys.argv[1], {**globals(), **vars(mine)})
+    from animat.numerics.snapshot import snapshot
+    own = snapshot(eval(sys.argv[1], {**globals(), **vars(mine)}))
     print(json.dumps({"result": run(float(sys.argv[2]), own), "compiled": names}))
 """
 
-# Runs a function by itself and then kernels; says after which it was told that one is compiled.
+# Runs a function by itself and then kernels; says how often it was told by then that one is
+# compiled, and what is written to the error output. A negative number asks for silence.
 TELLING = """
-import json
+import contextlib, io, json, logging, sys
 import mine, numpy
 from animat.life.engine import run
-from animat.numerics.compiled import announcing
+from animat.numerics.snapshot import snapshot
 
-done, told = [], []
-with announcing(lambda: told.append(list(done))):
-    done.append("own")
-    mine.own(1.0)
-    done.append("run")
-    run(1.0, mine.own)
-    done.append("again")
-    run(numpy.float32(1.0), mine.own)
-print(json.dumps({"result": done, "compiled": told}))
+own = snapshot(mine.own)
+if float(sys.argv[2]) < 0.0:
+    logging.getLogger("animat").setLevel("ERROR")
+said, told = io.StringIO(), []
+with contextlib.redirect_stderr(said):
+    own(1.0)
+    told.append(said.getvalue().count("compiling"))
+    run(1.0, own)
+    told.append(said.getvalue().count("compiling"))
+    run(numpy.float32(1.0), own)
+print(json.dumps({"result": said.getvalue(), "compiled": told}))
 """
 
 
@@ -128,10 +136,14 @@ class Laboratory:
     def __init__(self, folder: Path):
         self.folder = folder
         self.package = folder / "animat"
-        numerics = Path(animat.__file__).parent / "numerics"
+        real = Path(animat.__file__).parent
         shutil.copytree(
-            numerics, self.package / "numerics", ignore=shutil.ignore_patterns("__pycache__")
+            real / "numerics",
+            self.package / "numerics",
+            ignore=shutil.ignore_patterns("__pycache__"),
         )
+        for module in ("settings.py", "mistakes.py"):
+            shutil.copy(real / module, self.package)
         (self.package / "life").mkdir()
         for package in (self.package, self.package / "life"):
             (package / "__init__.py").write_text("")
@@ -139,6 +151,9 @@ class Laboratory:
         (self.package / "life" / "engine.py").write_text(ENGINE)
         (folder / "mine.py").write_text(OWN)
         (folder / "theirs.py").write_text(THEIRS)
+        (folder / "rates.txt").write_text("1.0 0.0")
+        (folder / "deep").mkdir()
+        (folder / "deep" / "params.py").write_text("WHICH = 0.0")
 
     def run(self, own="own", x=1.0, script=CHILD, **settings):
         """Run in a process of its own; return the result and the names of what it compiled."""
@@ -211,8 +226,10 @@ def test_what_a_user_s_file_imports_is_not_overlooked(laboratory):
     laboratory.edit("theirs.py", "STEEPNESS = (7.0", "STEEPNESS = (9.0")
     assert laboratory.run("other")[0] == 112
     laboratory.edit("theirs.py", "0.0 * x", "5.0 * x")
-    assert laboratory.run("other")[0] == 117
-    assert laboratory.run("other") == (117, [])
+    laboratory.edit("rates.txt", "1.0 0.0", "1.0 3.0")
+    laboratory.edit("deep/params.py", "0.0", "4.0")
+    assert laboratory.run("other")[0] == 124
+    assert laboratory.run("other") == (124, [])
 
 
 def test_a_file_that_cannot_be_imported_by_its_name_is_found_again(laboratory):
@@ -246,8 +263,14 @@ def test_a_function_that_is_gone_takes_no_other_with_it(laboratory):
 
 
 def test_a_user_is_told_once_that_kernels_are_compiled_and_not_when_they_are_read(laboratory):
-    assert laboratory.run(script=TELLING)[1] == [["own", "run"]]
-    assert laboratory.run(script=TELLING)[1] == []
+    text, told = laboratory.run(script=TELLING)
+    assert text == "compiling the simulator, once, some 20 s ...\n"
+    assert told == [0, 1]
+    assert laboratory.run(script=TELLING) == ("", [0, 0])
+
+
+def test_who_wants_no_word_of_compiling_silences_the_logger(laboratory):
+    assert laboratory.run(script=TELLING, x=-1.0) == ("", [0, 0])
 
 
 def test_functions_made_by_one_function_are_told_apart(laboratory):

@@ -8,7 +8,7 @@ import sys
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.numerics.compiled import compiled
@@ -100,7 +100,6 @@ def test_sine_and_cosine_are_within_one_unit(name):
 
 
 @given(st.floats(-1e6, 1e6))
-@settings(max_examples=300, deadline=None)
 def test_sine_and_cosine_are_within_one_unit_of_any_angle(angle):
     """Hypothesis likes zeros, subnormals, whole numbers and ends, and looks for more."""
     with mpmath.workprec(1300):
@@ -109,7 +108,6 @@ def test_sine_and_cosine_are_within_one_unit_of_any_angle(angle):
 
 
 @given(st.floats(-1e6, 1e6))
-@settings(max_examples=300, deadline=None)
 def test_sine_and_cosine_are_symmetrical_and_on_the_circle(angle):
     sine, cosine = sine_cosine(angle)
     assert sine_cosine(-angle) == (-sine, cosine)
@@ -158,7 +156,6 @@ def test_the_exponential_is_within_one_unit(name):
 
 
 @given(st.floats(allow_nan=False))
-@settings(max_examples=300, deadline=None)
 def test_the_exponential_and_the_logistic_are_near_for_any_float(x):
     """From the least subnormal to infinity, either way."""
     if abs(x) > 800:
@@ -207,7 +204,6 @@ def test_the_logistic_is_within_three_units(name):
 
 
 @given(st.floats(-800, 800))
-@settings(max_examples=300, deadline=None)
 def test_the_logistic_and_its_mirror_add_up_to_one(x):
     assert abs(logistic(x) + logistic(-x) - 1) < 3e-16
 

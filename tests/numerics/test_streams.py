@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -86,13 +86,11 @@ def test_known_answers_of_random123(counter, key, expected):
 
 
 @given(st.lists(word, min_size=6, max_size=6))
-@settings(max_examples=200, deadline=None)
 def test_equals_the_paper_s_algorithm(given_words):
     assert words(*given_words) == reference(32, given_words[:4], given_words[4:])
 
 
 @given(st.lists(long_word, min_size=6, max_size=6))
-@settings(max_examples=30, deadline=None)
 def test_the_reference_at_64_bits_is_numpy_s(given_words):
     counter, key = given_words[:4], given_words[4:]
     number = sum(value << (64 * place) for place, value in enumerate(counter))
@@ -102,7 +100,6 @@ def test_the_reference_at_64_bits_is_numpy_s(given_words):
 
 
 @given(long_word, long_word, st.integers(0, 255), st.integers(0, 2**56 - 1))
-@settings(max_examples=200, deadline=None)
 def test_the_address_fills_key_and_counter(seed, life, purpose, index):
     low = 2**32 - 1
     expected = words(

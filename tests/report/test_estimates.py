@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -8,7 +8,6 @@ from animat.report import estimates
 from animat.report.estimates import BCA_LIMIT, bootstrapped, mean, ratio_of_means, share
 
 
-@settings(max_examples=30, deadline=None)
 @given(total=st.integers(1, 2000), data=st.data())
 def test_a_share_has_wilsons_interval(total, data):
     count = data.draw(st.integers(0, total))

@@ -82,6 +82,25 @@ def test_levels_are_also_compared_in_each_of_a_few_combinations():
     assert got.resampled == LIVES
 
 
+def test_paired_lives_are_compared_within_their_pairs():
+    table = two_by_two(effect=1.5, cap=600)
+    (got, *_) = of(table, "agent").comparisons
+    frame = table.to_pandas().set_index(["agent", "world", "life"]).lifespan
+    difference = frame["AF"] - frame["BLIND"]
+    assert got.paired is not None
+    assert got.paired.pairs == 80
+    assert got.paired.difference.value == pytest.approx(difference.mean())
+    assert got.paired.outlives.value == pytest.approx((difference > 0).mean())
+    assert got.paired.ties == pytest.approx((difference == 0).mean())
+    assert got.paired.ties > 0
+
+
+def test_lives_of_their_own_random_numbers_are_no_pairs():
+    got = of(two_by_two(paired=False), "agent")
+    assert got.matched
+    assert all(one.paired is None for one in got.comparisons)
+
+
 def test_a_level_without_partners_is_left_out_of_a_comparison_not_of_its_level():
     """A study that still runs: AF has not yet lived in the poor world, where lives are short."""
     table = two_by_two(effect=1.0, luck_counts=1.0).slice(0, 120)

@@ -19,6 +19,9 @@ def test_only_what_was_done_is_told():
     assert "2 tests of factors" in text
     assert "within single combinations by the log-rank test" in text
     assert "6 comparisons" in text
+    assert "2 tests of interactions and for the 2 tests of contrasts" in text
+    assert "matched-pairs rank-biserial" in text
+    assert "Cliff's delta" not in text
     assert "SciPy 1.2.3" in text
     assert "sets of lives" in text
     assert "every life ended" in text.lower()
@@ -27,6 +30,14 @@ def test_only_what_was_done_is_told():
 def test_of_a_single_factor_the_test_has_no_strata():
     text = said([({"agent": name}, 300.0) for name in ("BLIND", "AF")], 25, ["agent"])
     assert "were tested by the log-rank test. Effect" in text
+
+
+def test_without_pairs_effect_sizes_are_not_told_as_paired():
+    cases = [({"agent": name}, 300.0) for name in ("BLIND", "AF")]
+    text = said(cases, 25, ["agent"], paired=False)
+    assert "Cliff's delta" in text
+    assert "within pairs" not in text
+    assert "interaction" not in text
 
 
 def test_a_range_is_told_as_it_was_tested():

@@ -16,9 +16,11 @@ from animat.report.resampling import (
     mean_over,
     median_over,
     numbers,
+    paired,
     quotient_over,
     ratio_over,
     sets_of,
+    share_over,
 )
 
 
@@ -42,6 +44,28 @@ def test_lives_of_one_luck_have_one_number_in_all_cases():
 def test_lives_of_their_own_luck_are_numbered_from_0_in_every_case():
     case, life = np.array([1, 0, 1, 0, 0]), np.array([9, 2, 8, 0, 1])
     assert numbers(np.zeros(5), life, case).tolist() == [1, 2, 0, 0, 1]
+
+
+def test_a_design_is_paired_if_cases_have_a_seed_and_index_in_common():
+    case = np.array([0, 0, 1, 1])
+    assert paired(np.full(4, 7), np.array([0, 1, 1, 2]), case)
+    assert not paired(np.full(4, 7), np.array([0, 1, 2, 3]), case)
+    assert not paired(np.array([7, 7, 8, 8]), np.array([0, 1, 0, 1]), case)
+    assert not paired(np.full(4, 7), np.array([0, 0, 1, 1]), case)
+
+
+@pytest.mark.parametrize("hits", [0, 1, 13, 30])
+def test_a_share_of_single_lives_has_wilsons_interval(hits):
+    got = share_over(np.arange(30) < hits, each(30))
+    theirs = stats.binomtest(hits, 30).proportion_ci(method="wilson")
+    np.testing.assert_allclose(got, (hits / 30, theirs.low, theirs.high), atol=1e-12)
+
+
+def test_a_share_counts_what_is_always_together_once():
+    hits = np.arange(30) < 13
+    thrice = share_over(np.tile(hits, 3), Sets(np.tile(np.arange(30), 3), 30, ""))
+    np.testing.assert_allclose(thrice, share_over(hits, each(30)))
+    assert np.isnan(share_over(hits, Sets(np.zeros(30, dtype=np.int64), 1, ""))[1:]).all()
 
 
 def test_a_life_told_twice_in_a_case_keeps_its_number():

@@ -23,15 +23,19 @@ def found():
 
 
 def test_the_page_has_a_part_for_all_lives_the_cases_the_factors_and_each_factor(found):
-    assert titles(found) == ["All lives", "The cases", "The factors", "agent", "world"]
+    assert titles(found) == [
+        "All lives", "The cases", "The factors", "agent", "world",
+        "Interactions of two factors", "agent by world",
+    ]  # fmt: skip
 
 
 def test_the_short_of_it_tells_most_of_what_matters_most(found):
-    whole, first, second = in_short(found)
+    whole, first, second, both = in_short(found)
     assert f"of {found.overall.summary.lives} lives ended" in whole
     assert first.startswith("agent: mean lifespans from")
     assert "stratified log-rank p" in first
     assert second.startswith("world: no difference shown")
+    assert both.startswith("Interactions of two factors: none shown")
 
 
 def test_a_factor_has_its_levels_its_comparisons_and_its_endings(found):
@@ -48,9 +52,19 @@ def test_a_factor_has_its_levels_its_comparisons_and_its_endings(found):
     assert all(each.alternative for each in section.pictures)
 
 
+@pytest.mark.parametrize(("paired", "size"), [(True, "Rank-biserial"), (False, "Cliff's delta")])
+def test_effect_sizes_are_paired_where_the_design_is(paired, size):
+    cases = [({"agent": name}, 300.0) for name in ("BLIND", "AF")]
+    found = find(lived(cases, 20, paired=paired), ["agent"], resamples=99)
+    comparisons = result_sections(found)[1].tables[1]
+    assert {"Rank-biserial", "Cliff's delta"} & set(comparisons.columns) == {size}
+    assert all(len(row) == len(comparisons.columns) for row in comparisons.rows)
+    assert ("seed and index" in comparisons.note) == paired
+
+
 def test_corrected_p_values_stand_beside_their_own_comparison(found):
     sections = result_sections(found)
-    shown = [row[-1] for section in sections[3:] for row in section.tables[1].rows]
+    shown = [row[-1] for section in sections[3:5] for row in section.tables[1].rows]
     assert shown == [p_value(p) for p in found.levels_p]
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pyarrow as pa
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.report.survival import (
@@ -29,7 +29,6 @@ def spans_table(steps, censored):
                      "life": list(range(len(steps)))})  # fmt: skip
 
 
-@settings(max_examples=25, deadline=None)
 @given(
     lives=st.lists(st.tuples(st.integers(1, 40), st.booleans()), min_size=2, max_size=60),
 )

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.numerics.compiled import compiled
@@ -180,7 +180,6 @@ def held(drives):
     return [command for command, steps in drives for _ in range(steps)]
 
 
-@settings(max_examples=80, deadline=None)
 @given(
     world=st.integers(0, 5),
     start=st.integers(0, 2**32 - 1),
@@ -204,7 +203,6 @@ def test_robot_never_enters_anything(world, start, drives, robot, worlds):
     assert ((poses[:, :2] > 20) & (poses[:, :2] < 280)).all()
 
 
-@settings(max_examples=80, deadline=None)
 @given(
     start=st.integers(0, 2**32 - 1),
     stubborn=st.lists(st.tuples(commands, st.integers(10, 100)), min_size=1, max_size=6),

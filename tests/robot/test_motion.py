@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -23,7 +23,6 @@ def drive(left, right, steps, heading=0.0, robot=EXACT):
     return x, y, heading
 
 
-@settings(max_examples=100, deadline=None)
 @given(motors, motors, st.integers(1, 40), headings)
 def test_constant_motors_draw_an_arc(left, right, steps, heading):
     """The sum of the steps' chords in closed form, as a geometric series."""
@@ -46,7 +45,6 @@ def test_straight_line_is_half_a_millimetre_a_unit():
     assert (x, y, heading) == pytest.approx((0.0, -10.0, math.pi / 2), abs=1e-14)
 
 
-@settings(max_examples=50, deadline=None)
 @given(st.integers(-1000, 1000), st.integers(-1000, 1000))
 def test_motors_are_held_to_their_range(left, right):
     held = [min(max(motor, -10), 10) for motor in (left, right)]

@@ -1,6 +1,6 @@
 """Runs of a study that are broken off: a driver that imports everything once, and forks for each.
 
-    python faults.py HOW FOLDER
+    python faults.py HOW FOLDER NUMBER
 
 A line of JSON on the output tells what came of it. `Faults` counts every call that changes the
 disk, and can make one of them the last.
@@ -27,11 +27,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from animat.files import RunError
 from animat.settings import SettingsError
 from animat.study.design.study import Study
 from animat.study.living.plan import Plan, plan_of
 from animat.study.running.run import run, threads
-from animat.study.store.store import StoreError
 
 SMALL = """
 name = "small"
@@ -55,8 +55,6 @@ LARGER = SMALL.replace("lives = 8", "lives = 100")
 DONE, FAILED, WRONG, UNDISTURBED = 0, 3, 4, 5
 """How a run ended: complete, told that the disk fails, told that the directory cannot be written,
 complete before there was a fault."""
-
-KILLS = 200
 
 
 class Faults:
@@ -146,7 +144,7 @@ def lived(study: Plan, directory: Path) -> int:
     try:
         with threads(2) as workers:
             outcome = run(study, directory, workers, lambda *_, **__: None)
-    except StoreError as error:
+    except RunError as error:
         sys.stderr.write(f"{error}\n")
         return FAILED
     except SettingsError as error:
@@ -165,11 +163,13 @@ def told_of(directory: Path) -> dict[str, str]:
     }
 
 
-def at_every_write(folder: Path, end: Callable[[], None]) -> dict[str, Any]:
-    """End runs at the first, second, ... call that changes the disk, and go on with each."""
+def at_writes(folder: Path, step: int, end: Callable[[], None]) -> dict[str, Any]:
+    """End runs at the first call that changes the disk, at the one `step` later, ..., and go on
+    with each.
+    """
     study = plan(SMALL)
     whole = _undisturbed(study, folder)
-    different, ends = [], []
+    different, ends, last = [], [], 1
 
     def disturbed(directory: Path, last: int) -> int:
         faults = Faults(last, end)
@@ -177,18 +177,20 @@ def at_every_write(folder: Path, end: Callable[[], None]) -> dict[str, Any]:
         ended = lived(study, directory)
         return ended if faults.count >= last else UNDISTURBED
 
-    while not ends or ends[-1] != UNDISTURBED:
-        last = len(ends) + 1
+    while UNDISTURBED not in ends:
         directory = folder / str(last)
         ends.append(forked(lambda to=directory, at=last: disturbed(to, at)))
         assert forked(lambda to=directory: lived(study, to)) == DONE
         if told_of(directory) != whole:
             different.append(last)
-    return {"points": len(ends) - 1, "ends": sorted(set(ends)), "different": different}
+        last += step
+    return {"points": last - step - 1, "ends": sorted(set(ends)), "different": different}
 
 
-def at_any_moment(folder: Path) -> dict[str, Any]:
-    """Kill runs at random moments, and go on with each until it is complete or killed again."""
+def at_any_moment(folder: Path, number: int) -> dict[str, Any]:
+    """Kill runs at so many random moments, and go on with each until it is complete or killed
+    again.
+    """
     study = plan(LARGER)
     whole = _undisturbed(study, folder)
     started = time.monotonic()
@@ -197,8 +199,8 @@ def at_any_moment(folder: Path) -> dict[str, Any]:
     moments = random.Random(1)
     kills, complete, different = 0, 0, 0
     directory = folder / "0"
-    while kills < KILLS or directory.exists():
-        after = moments.uniform(0.0, longest / 2) if kills < KILLS else None
+    while kills < number or directory.exists():
+        after = moments.uniform(0.0, longest / 2) if kills < number else None
         ended = forked(lambda to=directory: lived(study, to), after)
         kills += ended == -signal.SIGKILL
         if ended == DONE:
@@ -301,14 +303,14 @@ def _undisturbed(study: Plan, folder: Path) -> dict[str, str]:
         return told_of(Path(directory))
 
 
-HOW: dict[str, Callable[[Path], dict[str, Any]]] = {
-    "killed at every write": lambda folder: at_every_write(folder, die),
-    "no room at every write": lambda folder: at_every_write(folder, no_room),
+HOW: dict[str, Callable[[Path, int], dict[str, Any]]] = {
+    "killed at writes": lambda folder, step: at_writes(folder, step, die),
+    "no room at writes": lambda folder, step: at_writes(folder, step, no_room),
     "killed at any moment": at_any_moment,
-    "full disks": on_full_disks,
-    "read only": where_nothing_may_be_written,
+    "full disks": lambda folder, _: on_full_disks(folder),
+    "read only": lambda folder, _: where_nothing_may_be_written(folder),
 }
 
 
 if __name__ == "__main__":
-    sys.stdout.write(json.dumps(HOW[sys.argv[1]](Path(sys.argv[2]))) + "\n")
+    sys.stdout.write(json.dumps(HOW[sys.argv[1]](Path(sys.argv[2]), int(sys.argv[3]))) + "\n")

@@ -1,11 +1,13 @@
 """One life from the command line: what is told and written is the life itself."""
 
+import re
 from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
 
 import animat
+from animat.life import drawing
 from animat.life import life as life_module
 from animat.life.life import live
 from animat.life.recording import EVERY, Recording
@@ -14,7 +16,7 @@ from animat.mind.mind import Mind
 from animat.settings import SettingsError
 from animat.study import one_life
 from animat.study.design.settings import LifeSettings
-from animat.study.one_life import FIGURE_ROWS, OneLife, live_one, story
+from animat.study.one_life import OneLife, live_one, story
 from animat.world.world import World
 
 
@@ -58,15 +60,14 @@ def test_the_figure_is_of_the_kind_its_name_says(tmp_path, name, start):
     assert [each.name for each in tmp_path.iterdir()] == [name]
 
 
-def test_the_figure_of_a_long_life_is_drawn_from_few_rows(tmp_path, monkeypatch):
-    monkeypatch.setattr(one_life, "FIGURE_ROWS", 100)
-    drawn = []
-    figure = life_module.Life.figure
-    monkeypatch.setattr(life_module.Life, "figure", lambda self: drawn.append(self) or figure(self))
+def test_the_figure_of_a_life_in_parts_is_that_of_its_whole_trace(tmp_path, monkeypatch):
+    monkeypatch.setattr(life_module, "SLICE", 400)
     life = live_one(asked(figure=tmp_path / "a.svg"), silent)
-    assert life.lifespan > 200
-    assert 100 <= drawn[0].trace.num_rows < 200
-    assert FIGURE_ROWS >= 100_000
+    whole = live(life.mind, life.world, seed=life.seed, life=life.index, record="all")
+    whole.figure().savefig(tmp_path / "b.svg")
+    drawn = [re.findall(r' d="(.*?)"', (tmp_path / f"{n}.svg").read_text(), re.S) for n in "ab"]
+    assert life.lifespan > 400
+    assert sorted(drawn[0]) == sorted(drawn[1])
 
 
 def test_af_learns_first_if_it_knows_nothing(monkeypatch):
@@ -207,10 +208,10 @@ def test_a_recorded_life_goes_on(tmp_path):
 def test_the_figure_of_a_life_that_goes_on_begins_there(tmp_path, monkeypatch):
     live_one(asked(Mind(agent="LEARNING"), steps=300, record=tmp_path / "a.parquet"), silent)
     drawn = []
-    figure = life_module.Life.figure
-    monkeypatch.setattr(life_module.Life, "figure", lambda self: drawn.append(self) or figure(self))
+    draw = drawing.draw_life
+    monkeypatch.setattr(drawing, "draw_life", lambda *given: drawn.append(given[2]) or draw(*given))
     live_one(asked(source=tmp_path / "a.parquet", at=120, figure=tmp_path / "a.svg"), silent)
-    assert drawn[0].trace["step"].to_pylist() == list(range(120, 300))
+    assert drawn == [(120, 300)]
 
 
 def test_where_a_life_cannot_go_on_is_told(tmp_path):

@@ -1,6 +1,6 @@
 import pytest
-from pydantic import ValidationError
 
+from animat.settings import SettingsError
 from animat.world.arena import Arena
 
 
@@ -28,5 +28,5 @@ def test_margins_shape_the_free_rectangle():
     ],
 )
 def test_impossible_arenas_are_refused(settings, word):
-    with pytest.raises(ValidationError, match=word):
+    with pytest.raises(SettingsError, match=word):
         Arena(**settings)

@@ -1,7 +1,7 @@
 import tomllib
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.settings import SettingsError
@@ -37,7 +37,6 @@ text = st.text(st.characters(codec="utf-8"), min_size=1, max_size=12)
 number = st.floats(-1e6, 1e6)
 
 
-@settings(max_examples=60, deadline=None)
 @given(
     name=text, features=st.dictionaries(text, number, min_size=1, max_size=3),
     affords=st.dictionaries(text, st.floats(0, 1), min_size=1, max_size=3),

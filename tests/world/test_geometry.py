@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.world.geometry import packed, polygon_gap, signed_distance
@@ -18,7 +18,6 @@ def star(rng, corners):
     return points - area_and_centroid(points)[1]
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.integers(0, 2**32), st.integers(3, 12))
 def test_signed_distance_is_shapelys(seed, corners):
     rng = np.random.default_rng(seed)
@@ -31,7 +30,6 @@ def test_signed_distance_is_shapelys(seed, corners):
         assert (distance < 0) == shape.contains(place)
 
 
-@settings(max_examples=200, deadline=None)
 @given(st.integers(0, 2**32), st.integers(3, 9), st.integers(3, 9), st.floats(0, 150))
 def test_the_gap_of_two_polygons_is_shapelys(seed, corners_a, corners_b, away):
     rng = np.random.default_rng(seed)
@@ -52,7 +50,6 @@ def test_a_polygon_within_another_touches_it():
     assert polygon_gap(outline, *first[1:], *first[:2]) == 0.0
 
 
-@settings(max_examples=50, deadline=None)
 @given(st.integers(0, 2**32), st.floats(-10, 10))
 def test_packing_turns_anticlockwise_then_shifts(seed, angle):
     rng = np.random.default_rng(seed)

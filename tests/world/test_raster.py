@@ -57,7 +57,7 @@ def centres(raster):
     return np.meshgrid(x, y)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=settings().max_examples // 3)
 @given(
     st.integers(0, 2**32), st.integers(0, 7), st.sampled_from([0.0, 25.0, 90.0]),
     st.sampled_from([2.0, 3.7, 10.0]),
@@ -102,7 +102,7 @@ def untiled(raster):
     return tiles.swapaxes(1, 2).reshape(-1, columns * TILE)[:rows, :there]
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=settings().max_examples // 3)
 @given(st.integers(0, 2**32), st.integers(0, 7), st.sampled_from([0.7, 2.0, 3.7, 10.0]))
 def test_room_is_free_round_every_point_of_a_cell_and_nearly_all_there_is(seed, sites, resolution):
     arena, outlines, _ = random_world(seed, sites, side=200.0)

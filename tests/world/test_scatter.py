@@ -3,7 +3,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.world import scatter as module
@@ -30,7 +30,6 @@ def refused(call, *given_values):
     return caught.value.problems
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.integers(0, 2**64 - 1), st.floats(0, 80), st.integers(0, 3))
 def test_objects_keep_the_gap_from_each_other_and_from_walls(seed, gap, spares):
     layout = with_spares(dropped(MIX, seed, gap), spares, seed, gap)

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.world.shapes import SIDES, area_and_centroid, polygon
@@ -46,7 +46,6 @@ def test_an_octagon_is_as_wide_as_it_is_high():
     np.testing.assert_allclose(np.ptp(corners, axis=0), 100.0)
 
 
-@settings(max_examples=50, deadline=None)
 @given(st.integers(0, 2**32), st.booleans(), st.tuples(st.floats(-500, 500), st.floats(-500, 500)))
 def test_corners_of_ones_own_are_centred_and_anticlockwise(seed, clockwise, shift):
     given_corners = star(seed) + shift
@@ -57,7 +56,6 @@ def test_corners_of_ones_own_are_centred_and_anticlockwise(seed, clockwise, shif
     assert outline.area == pytest.approx(shapely.Polygon(given_corners).area)
 
 
-@settings(max_examples=50, deadline=None)
 @given(st.integers(0, 2**32))
 def test_area_and_centroid_are_shapelys(seed):
     corners = star(seed)
@@ -68,7 +66,6 @@ def test_area_and_centroid_are_shapelys(seed):
     assert area_and_centroid(corners[::-1])[0] == pytest.approx(-area)
 
 
-@settings(max_examples=200, deadline=None)
 @given(st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)), min_size=3, max_size=7))
 def test_corners_are_refused_exactly_when_they_make_no_simple_polygon(corners):
     scaled = [(10.0 * x, 10.0 * y) for x, y in corners]

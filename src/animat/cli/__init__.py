@@ -17,4 +17,5 @@ from animat.cli import schema as schema
 from animat.cli import sensitivity as sensitivity
 from animat.cli import status as status
 from animat.cli import verify as verify
+from animat.cli import world as world
 from animat.cli.app import main as main

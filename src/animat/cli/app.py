@@ -6,12 +6,14 @@ import os
 import sys
 import threading
 import traceback
-from io import TextIOWrapper
-from typing import NoReturn
+import warnings
+from typing import Annotated, NoReturn
 
 import typer
 
 from animat.cli.options import Debug
+from animat.cli.streams import steady_streams, why_output_was_lost
+from animat.version import __version__
 
 app = typer.Typer(
     name="animat",
@@ -29,18 +31,34 @@ KERNEL_THREAD = "animat"
 DONE, FAILED, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
+def _say_version(asked: bool) -> None:
+    if asked:
+        print(f"animat {__version__}")
+        raise typer.Exit
+
+
 @app.callback()
-def _animat(debug: Debug = False) -> None:
+def _animat(
+    debug: Debug = False,
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Say which version this is.", callback=_say_version, is_eager=True
+        ),
+    ] = False,
+) -> None:
     """Read the options that go before every command."""
 
 
 def main() -> None:
     """Run the command line and exit with its code."""
-    if isinstance(sys.stdout, TextIOWrapper):
-        sys.stdout.reconfigure(errors="replace")
+    steady_streams()
+    _set_environment()
     try:
+        _check_not_empty(sys.argv[1:])
         code = app(standalone_mode=False)
-        sys.stdout.flush()
+        if why := why_output_was_lost():
+            _leave(f"the output cannot be written: {why}", FAILED)
     except KeyboardInterrupt:
         code = INTERRUPTED
     except Exception as error:
@@ -50,15 +68,34 @@ def main() -> None:
     sys.exit(code if isinstance(code, int) else DONE)
 
 
+def _set_environment() -> None:
+    """Keep variables that are meant for others from stopping a command."""
+    os.environ["MPLBACKEND"] = "agg"  # nothing is shown
+    os.environ.pop("NUMBA_NUM_THREADS", None)  # nothing is run on numba's threads
+    # Numba warns, at length, of a variable of its own that it cannot read.
+    warnings.filterwarnings("error", "Environment variable", RuntimeWarning)
+
+
+def _check_not_empty(arguments: list[str]) -> None:
+    """Refuse an empty argument: as a path it would be the working directory."""
+    from animat.settings import SettingsError
+
+    for before, argument in zip(["", *arguments], arguments, strict=False):
+        option = argument or before
+        if not argument or (argument.startswith("--") and argument.endswith("=")):
+            name = f"{option.rstrip('=')}: " if option.startswith("-") else "an argument "
+            raise SettingsError(f"{name}is empty")
+
+
 def _explain(error: Exception) -> NoReturn:
     """Say what went wrong in a line for each mistake, and exit."""
+    from animat.files import RunError
     from animat.settings import SettingsError
-    from animat.study.store.lock import RunError
 
     if "--debug" in sys.argv:
         traceback.print_exception(error)
-    if isinstance(error, BrokenPipeError):
-        _leave("", FAILED)
+    if isinstance(error, RuntimeWarning):
+        _leave(str(error).partition("\n")[0], WRONG_INPUT)
     if usage := getattr(error, "format_message", None):
         _leave(usage(), WRONG_INPUT)
     if isinstance(error, SettingsError):
@@ -74,13 +111,9 @@ def _explain(error: Exception) -> NoReturn:
 
 
 def _leave(text: str, code: int) -> NoReturn:
+    sys.stdout.flush()
     for line in text.splitlines():
         print(f"animat: {line}", file=sys.stderr)
-    try:
-        sys.stdout.flush()
-    except OSError:
-        # Python would try once more at its end, and complain.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if code == INTERRUPTED and any(t.name == KERNEL_THREAD for t in threading.enumerate()):
         # Compiled code that never returns must not see Python taken down around it.
         sys.stderr.flush()

@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from animat.cli.app import app
-from animat.cli.options import Debug, Set, StudyFile, compiling_told
+from animat.cli.options import Debug, Set, StudyFile
 
 if TYPE_CHECKING:
     from rich.table import Table
 
     from animat.study.design.design import Case
+    from animat.study.design.factors import Scalar
     from animat.study.running.expectation import Expectation, Range
 
 PRINTED_WIDTH = 120
@@ -41,10 +42,9 @@ def check(study: StudyFile, changes: Set = None, debug: Debug = False) -> None:
     path = study_file(study)
     asked = read_study(path, changes or ())
     left_out = excluded(asked)
-    with compiling_told():
-        plan = Plan(asked)
-        check_livable(plan)
-        expected = expect(plan)
+    plan = Plan(asked)
+    check_livable(plan)
+    expected = expect(plan)
     cases = "1 case" if len(plan.cases) == 1 else f"{len(plan.cases):,} cases"
     print(f"{asked.name} ({path}): {cases}, {asked.lives:,} lives each")
     if any(case.factors for case in plan.cases):
@@ -63,27 +63,37 @@ def _table(cases: Sequence[Case]) -> Table:
     """Return the cases as a table, of many only the first and the last ones."""
     from rich.table import Table
 
+    from animat.study.design.factors import identity
+
     names = list(dict.fromkeys(name for case in cases for name in case.factors))
     in_columns = len(names) <= COLUMNS
     table = Table("case", *(names if in_columns else ["what it is"]))
-    for case in cases if len(cases) <= FIRST + LAST else cases[:FIRST]:
-        table.add_row(*_row(case, names, in_columns))
-    if len(cases) > FIRST + LAST:
-        table.add_row("...")
-        for case in cases[-LAST:]:
-            table.add_row(*_row(case, names, in_columns))
+    shown = cases if len(cases) <= FIRST + LAST else [*cases[:FIRST], *cases[-LAST:]]
+    said = {
+        name: _said([case.factors[name] for case in shown if name in case.factors])
+        for name in names
+    }
+    for place, case in enumerate(shown):
+        if place == FIRST and len(shown) < len(cases):
+            table.add_row("...")
+        told = {
+            name: said[name].get(identity(value), str(value))
+            for name, value in case.factors.items()
+        }
+        if in_columns:
+            table.add_row(str(case.number), *(told.get(name, "") for name in names))
+        else:
+            each = ", ".join(f"{name} = {told[name]}" for name in names if name in told)
+            table.add_row(str(case.number), each)
     return table
 
 
-def _row(case: Case, names: Sequence[str], in_columns: bool) -> list[str]:
-    told = {name: _written(case.factors[name]) for name in names if name in case.factors}
-    if in_columns:
-        return [str(case.number), *(told.get(name, "") for name in names)]
-    return [str(case.number), ", ".join(f"{name} = {value}" for name, value in told.items())]
+def _said(values: Sequence[Scalar]) -> dict[tuple[bool, Scalar], str]:
+    """Return the numbers among values in words that tell them apart."""
+    from animat.report.numerals import numerals
 
-
-def _written(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    numbers = [v for v in values if isinstance(v, int | float) and not isinstance(v, bool)]
+    return {(False, number): said for number, said in numerals(numbers).items()}
 
 
 def _costs(expected: Expectation) -> list[str]:

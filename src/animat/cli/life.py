@@ -8,14 +8,7 @@ from typing import Annotated
 import typer
 
 from animat.cli.app import app
-from animat.cli.options import (
-    CheckFunctions,
-    Debug,
-    Seed,
-    SettingsFile,
-    compiling_told,
-    settings_of,
-)
+from animat.cli.options import CheckFunctions, Debug, Seed, Set, SettingsFile, settings_of
 
 BY_RECORDING = {
     "world": "--world",
@@ -24,6 +17,8 @@ BY_RECORDING = {
     "seed": "--seed",
     "index": "--life",
     "settings": "--settings",
+    "changes": "--set",
+    "networks": "--networks",
 }
 """Options that say what a recording says."""
 
@@ -48,11 +43,18 @@ def life(
         int | None, typer.Option(help="The cap of the life, in steps; 300,000 unless given.")
     ] = None,
     settings: SettingsFile = None,
+    changes: Set = None,
+    networks: Annotated[
+        Path | None, typer.Option(help="The .toml file of the networks it is born with.")
+    ] = None,
     trace: Annotated[
-        Path | None, typer.Option(help="Write the trace to this .parquet file.")
+        Path | None, typer.Option(help="Write the trace to this .parquet or .csv file.")
     ] = None,
     figure: Annotated[
         Path | None, typer.Option(help="Draw the life to this .svg, .png or .pdf file.")
+    ] = None,
+    save_networks: Annotated[
+        Path | None, typer.Option(help="Write its networks at the end to this .toml file.")
     ] = None,
     record: Annotated[
         Path | None,
@@ -77,22 +79,12 @@ def life(
     from animat.study.one_life import OneLife, live_one, story
 
     _check_together(context)
-    chosen = settings_of(settings, physiology=physiology, agent=agent, world=world)
+    chosen = settings_of(settings, changes, physiology=physiology, agent=agent, world=world)
     asked = OneLife(
-        chosen,
-        seed,
-        index,
-        steps,
-        trace,
-        figure,
-        force,
-        record,
-        every,
-        source,
-        at,
-        check_functions,
-    )
-    with compiling_told(), telling() as tell:
+        chosen, seed, index, steps, trace, figure, force, record, every, source, at,
+        check_functions, networks, save_networks,
+    )  # fmt: skip
+    with telling() as tell:
         lived = live_one(asked, tell)
     for line in story(lived):
         print(line)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from animat.cli.app import DONE, INTERRUPTED, app
-from animat.cli.options import Debug, Out, Quick, Set, StudyFile, Threads, compiling_told
+from animat.cli.options import Debug, Out, Quick, Set, StudyFile, Threads
 
 if TYPE_CHECKING:
     from animat.study.design.study import Study
@@ -66,7 +66,7 @@ def multiverse(
         _say_what(asked, directory)
     started = time.monotonic()
     try:
-        with compiling_told(), telling() as tell, workers_of(threads) as workers:
+        with telling() as tell, workers_of(threads) as workers:
             found = run_multiverse(asked, directory, size, workers, tell, full=full)
             command = str(provenance()["command"])
             publish(

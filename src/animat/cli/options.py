@@ -1,10 +1,8 @@
-"""What several commands take, and word of a compilation."""
+"""What several commands take."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -41,33 +39,43 @@ CheckFunctions = Annotated[
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 
 
-def settings_of(file: Path | None, **given: str | None) -> LifeSettings:
-    """Return the settings of a file, if any, changed by what the command line gives."""
+def settings_of(
+    file: Path | None, changes: Sequence[str] | None = None, **given: str | None
+) -> LifeSettings:
+    """Return the settings of a file, if any, changed by what the command line gives.
+
+    `changes` are those of --set. Raises SettingsError.
+    """
     from pydantic import ValidationError
 
-    from animat.settings import explain, read_toml
+    from animat.mistakes import mistakes, written
+    from animat.settings import SettingsError, parse_toml, validated
+    from animat.study.design.keys import UnknownKeyError, put
+    from animat.study.design.overrides import led_by, override
     from animat.study.design.settings import LifeSettings
 
-    settings = read_toml(file, LifeSettings) if file is not None else LifeSettings()
-    chosen = {name: value for name, value in given.items() if value is not None}
-    layout = chosen.pop("world", None)
-    changes = {"mind": chosen} | ({} if layout is None else {"world": {"layout": layout}})
-    merged = settings.model_dump(exclude_unset=True)
-    for section, values in changes.items():
-        merged[section] = {**merged.get(section, {}), **values}
+    data = {} if file is None else parse_toml(file)
+    changed, problems = override(data, LifeSettings, changes or ())
+    options = []
+    for name, value in given.items():
+        if value is None:
+            continue
+        key = ("world", "layout") if name == "world" else ("mind", name)
+        if key in changed:
+            problems.append(f"--set {written(key)}: --{name} sets it, too; give one of them")
+        try:
+            put(data, LifeSettings, key, value)
+        except UnknownKeyError:
+            continue  # the file has no table there, of which it is told below
+        options.append(key)
+    lines: list[str] = []
     try:
-        return LifeSettings.model_validate(merged, strict=False)
+        settings = validated(data, LifeSettings)
     except ValidationError as error:
-        raise explain(error, LifeSettings, "command line") from None
-
-
-@contextmanager
-def compiling_told() -> Iterator[None]:
-    """Say so on the error output if anything is compiled meanwhile."""
-    from animat.numerics.compiled import announcing
-
-    def tell() -> None:
-        print("compiling the simulator, once, some 20 s ...", file=sys.stderr, flush=True)
-
-    with announcing(tell):
-        yield
+        lines = mistakes(error, LifeSettings)
+    else:
+        if not problems:
+            return settings
+    leads = [("--set", changed), ("command line", options)]
+    where = str(file) if file is not None else "command line"
+    raise SettingsError(*problems, *(f"{led_by(line, leads, where)}: {line}" for line in lines))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from animat.cli.app import FAILED, app
-from animat.cli.options import Debug, compiling_told
+from animat.cli.options import Debug
 
 if TYPE_CHECKING:
     from animat.life.difference import Difference
@@ -38,7 +38,7 @@ def replay(
         return
     head = recording.head
     steps = head.last - head.first
-    with compiling_told(), telling() as tell:
+    with telling() as tell:
         found = recording.verify(lambda more: tell("Life again, steps", more, steps))
     if found is not None:
         for line in _told(found):

@@ -12,14 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from animat.cli.app import app
-from animat.cli.options import (
-    CheckFunctions,
-    Debug,
-    Seed,
-    SettingsFile,
-    compiling_told,
-    settings_of,
-)
+from animat.cli.options import CheckFunctions, Debug, Seed, SettingsFile, settings_of
 
 if TYPE_CHECKING:
     from animat.study.reproduction.reproduction import Reproduction
@@ -59,7 +52,7 @@ def reproduce(
     chosen = settings_of(settings, physiology=physiology)
     check(chosen, seed, size)
     started = time.monotonic()
-    with fresh_directory(out, force=force) as directory, compiling_told(), telling() as tell:
+    with fresh_directory(out, force=force) as directory, telling() as tell:
         with kept_told(directory):
             result = run(
                 chosen,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from animat.cli.app import DONE, FAILED, INTERRUPTED, app
-from animat.cli.options import CheckFunctions, Debug, Out, Set, StudyFile, Threads, compiling_told
+from animat.cli.options import CheckFunctions, Debug, Out, Set, StudyFile, Threads
 
 if TYPE_CHECKING:
     from animat.study.living.plan import Plan
@@ -55,7 +55,7 @@ def run(
     plan = plan_of(read_study(study_file(study), changes or ()).to_toml(), check_functions)
     directory = out or Path("results") / plan.study.name
     _say_what(plan, directory)
-    with compiling_told(), telling() as tell, _workers(plan, threads, cluster, jobs) as workers:
+    with telling() as tell, _workers(plan, threads, cluster, jobs) as workers:
         if not (directory / MANIFEST).exists():
             check_livable(plan)
         outcome = live(plan, directory, workers, tell)

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from animat.cli.app import DONE, INTERRUPTED, app
-from animat.cli.options import Debug, Out, Quick, Set, StudyFile, Threads, compiling_told
+from animat.cli.options import Debug, Out, Quick, Set, StudyFile, Threads
 
 QUICK = ("lives=4", "steps=5_000", "teacher.steps=20_000", "design.sample.points=4")
 
@@ -35,7 +35,7 @@ def sensitivity(
     asked = read_study(study_file(study), [*(QUICK if quick else ()), *(changes or ())])
     check(asked)
     directory = out or Path("results") / asked.name
-    with compiling_told(), telling() as tell, workers_of(threads) as workers:
+    with telling() as tell, workers_of(threads) as workers:
         outcome = run(Plan(asked), directory, workers, tell)
     if not outcome.complete:
         print(f"animat: the same command goes on with {directory}", file=sys.stderr)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 from animat.cli.app import DONE, FAILED, app
-from animat.cli.options import Debug, ResultsDirectory, compiling_told
+from animat.cli.options import Debug, ResultsDirectory
 
 
 @app.command()
@@ -16,7 +16,7 @@ def verify(directory: ResultsDirectory, debug: Debug = False) -> int:
     from animat.study.store.verify import verify as look
 
     results = open_results(directory)
-    with compiling_told(), telling() as tell:
+    with telling() as tell:
         found = look(results, tell)
     for problem in found.problems:
         print(f"animat: {problem}", file=sys.stderr)

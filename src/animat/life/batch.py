@@ -17,6 +17,7 @@ from threading import Event
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.errors import Error
 from animat.life.failure import carried_not_finite, failure_of, not_finite, raised, unknown
 from animat.life.likelihoods import likelihoods
 from animat.life.setting import LifeError, Setting
@@ -39,7 +40,7 @@ Progress = Callable[[int], None]
 """Called with the steps simulated since the last call."""
 
 
-class StoppedError(Exception):
+class StoppedError(Error):
     """Lives were stopped before their end."""
 
 

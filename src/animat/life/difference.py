@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 
 from animat.life.kept import Fields, Kept, opened
 from animat.mind.mind import Mind
+from animat.names import KEPT
 from animat.world.world import World
-
-KEPT = ("kept_state", "kept_present", "kept_digest")
-"""The columns of a recording that hold moments; null in most rows."""
 
 
 class Field(NamedTuple):

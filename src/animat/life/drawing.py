@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyarrow as pa
 
+from animat.mind.mind import Drive
 from animat.report.figures.life import life_figure
 from animat.report.figures.worlds import RobotDrawing, WorldDrawing
 from animat.robot.khepera import REACH, Khepera
+from animat.world.files import WorldFile
 from animat.world.world import World
 
 if TYPE_CHECKING:
@@ -36,22 +40,55 @@ def world_drawing(
     )
 
 
+def file_drawing(file: WorldFile) -> WorldDrawing:
+    """Return a world as its file has it, also where its objects cannot stand so."""
+    kinds = {kind.name: kind.polygon() for kind in file.types}
+    polygons = []
+    for one in file.objects:
+        sine, cosine = math.sin(one.angle), math.cos(one.angle)
+        turned = kinds[one.type] @ np.array([[cosine, sine], [-sine, cosine]])
+        polygons.append(turned + np.array([one.x, one.y]))
+    return WorldDrawing(
+        title=file.name,
+        width=file.arena.width,
+        height=file.arena.height,
+        free=file.arena.free,
+        polygons=polygons,
+        types=[one.type for one in file.objects],
+    )
+
+
 def robot_drawing(robot: Khepera) -> RobotDrawing:
     """Return a robot as a figure draws it."""
     sensors = [(one.x, one.y, math.radians(one.direction)) for one in robot.sensors]
     return RobotDrawing(robot.radius, np.array(sensors), REACH[robot.infrared], SPREAD)
 
 
-def draw_life(life: Life) -> Figure:
-    """Return the figure of a recorded life: needs, drives, behaviours, events and the path."""
-    assert life.trace is not None
+def _need(drive: Drive) -> str:
+    """Return the variable a drive is about: of several, the one that weighs most in it."""
+    weights = {
+        name: abs(drive.a.get(name, 0.0)) + abs(drive.b.get(name, 0.0))
+        for name in sorted({*drive.a, *drive.b})
+    }
+    return max(weights, key=lambda name: weights[name])
+
+
+def draw_life(
+    life: Life, trace: pa.Table | Iterable[pa.Table], span: tuple[int, int] | None = None
+) -> Figure:
+    """Return the figure of a life and its trace: needs, drives, behaviours, events and the path.
+
+    Of a trace in parts, `span` is its first step and the one after its last.
+    """
     title = f"{life.mind.agent}, {life.world.name}, seed {life.seed}: {life.lifespan:,} steps"
     return life_figure(
-        life.trace,
+        trace,
+        span=span,
         set_points={
             name: variable.set_point for name, variable in life.mind.resolved_variables().items()
         },
-        drives=list(life.mind.drives),
+        drives=(needs := {name: _need(drive) for name, drive in life.mind.drives.items()}),
+        behaviours={name: needs[one.serves] for name, one in life.mind.behaviours.items()},
         world=world_drawing(life.world, life.world.name),
         title=title if life.death is None else f"{title}, died of {life.death}",
     )

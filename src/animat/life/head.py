@@ -16,7 +16,7 @@ from animat.life.setting import LifeError, Setting, bring_together
 from animat.life.summary import death_of
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
-from animat.numerics.fingerprint import fingerprint
+from animat.numerics.snapshot import lasting_identity
 from animat.robot.khepera import Khepera
 from animat.settings import Settings, SettingsError, explain
 from animat.world.files import WorldFile, world_file
@@ -50,7 +50,7 @@ class End(Settings):
 class Head(Settings):
     """What a recording says besides its steps.
 
-    `mind`, `networks`, `robot` and `world` hold the settings in full, `functions` the fingerprint
+    `mind`, `networks`, `robot` and `world` hold the settings in full, `functions` the identity
     of each function of the user's own, by its role. Recorded are the steps from `first` to before
     `last` of a life that was to have `steps` at most. The state before `first`, and before every
     step that `every` divides, is kept with the trace; the one at the end, here, and what the life
@@ -101,7 +101,7 @@ class Head(Settings):
         mind = Mind(**{**dict(self.mind), "networks": networks})
         world = World(self.world.layout(), self.world.name, self.world.resolution)
         setting = bring_together(mind, world, self.robot)
-        for role, found in _fingerprints(setting).items():
+        for role, found in _identities(setting).items():
             if found != self.functions.get(role):
                 given = mind.own_functions()[role]
                 raise LifeError(f"{role}: {given} has changed since the life was recorded")
@@ -148,7 +148,7 @@ def head_of(moment: Moment, steps: int, every: int, made: Mapping[str, Any]) -> 
         ),
         robot=setting.robot,
         world=world_file(world.name, world.layout, world.resolution),
-        functions=_fingerprints(setting),
+        functions=_identities(setting),
         fields=fields,
         end=_end(moment, fields),
         death=None,
@@ -183,7 +183,7 @@ def _end(moment: Moment, fields: Fields) -> End:
     return End(state=kept.state.hex(), present=kept.present.hex(), digest=kept.digest)
 
 
-def _fingerprints(setting: Setting) -> dict[str, str]:
-    """Return the fingerprints of the user's own functions by their role."""
+def _identities(setting: Setting) -> dict[str, str]:
+    """Return the identities of the user's own functions by their role."""
     own = setting.mind.own_functions()
-    return {role: fingerprint(getattr(setting.functions, role)) for role in own}
+    return {role: lasting_identity(getattr(setting.functions, role)) for role in own}

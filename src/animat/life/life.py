@@ -4,26 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from animat.arguments import MOST_63, MOST_64, callback, instance, whole
 from animat.life.batch import Progress, advance, failure
 from animat.life.digest import digest
 from animat.life.failure import FailedLifeError
 from animat.life.setting import LifeError, Setting, bring_together
 from animat.life.slices import live_recorded
 from animat.life.summary import death_of, summary
+from animat.life.table_files import to_pandas, write_csv
 from animat.life.trace import row_dtype, table
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
+from animat.mistakes import brief
 from animat.numerics.threads import attempt
 from animat.robot.khepera import Khepera
 from animat.world.world import World
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.figure import Figure
 
 SLICE = 100_000
@@ -36,7 +41,7 @@ LONGEST = 1 << 50
 class Life:
     """A life that was lived: its setting, seed and index, its state at the end, and its trace.
 
-    `trace` is a table with a row for each recorded step (columns in docs/trace.md), or None.
+    `trace` is a table with a row for each recorded step (columns in docs/tables.md), or None.
     """
 
     setting: Setting
@@ -90,16 +95,35 @@ class Life:
             np.array(self.state.weights),
         )
 
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the trace as a pandas table; needs pandas (`pip install animat[pandas]`).
+
+        Raises LifeError if the life was not recorded, SettingsError without pandas.
+        """
+        return to_pandas(self._recorded())
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the trace as a CSV file, replacing what was there.
+
+        Raises LifeError if the life was not recorded, SettingsError for what cannot be written.
+        """
+        write_csv(self._recorded(), path)
+
+    def _recorded(self) -> pa.Table:
+        if self.trace is None:
+            raise LifeError('this life was not recorded: live it with record="all"')
+        return self.trace
+
     def figure(self) -> Figure:
         """Draw the trace: variables, drives, behaviours, rewards and the path.
 
-        Raises LifeError if the life was not recorded.
+        Raises LifeError if no step of the life was recorded.
         """
-        if self.trace is None:
-            raise LifeError('this life was not recorded: live it with record="all"')
+        if self.trace is None or not self.trace.num_rows:
+            raise LifeError('no step of this life was recorded: live it with record="all"')
         from animat.life.drawing import draw_life
 
-        return draw_life(self)
+        return draw_life(self, self.trace)
 
 
 class Moment(NamedTuple):
@@ -141,8 +165,8 @@ class Moment(NamedTuple):
         FailedLifeError.
         """
         choice = TraceChoice.parse(record)
-        check(self.seed, self.index, steps)
-        return _live_on(self.copy(), steps, choice, progress)
+        _, _, steps = check(self.seed, self.index, steps)
+        return _live_on(self.copy(), steps, choice, callback("progress", progress, LifeError))
 
 
 @dataclass(frozen=True)
@@ -157,8 +181,9 @@ class TraceChoice:
         """Read "all", "every:N", "last:N" or None. Raises LifeError."""
         if text is None:
             return None
-        word, _, number = text.partition(":")
-        count = int(number) if number.isascii() and number.isdigit() else 0
+        word, _, number = instance("record", text, str, LifeError).partition(":")
+        is_count = number.isascii() and number.isdigit() and len(number) <= len(str(LONGEST))
+        count = min(int(number), LONGEST) if is_count else 0
         if word == "all" and not number:
             return cls()
         if word == "every" and count > 0:
@@ -166,7 +191,8 @@ class TraceChoice:
         if word == "last" and 0 < count <= SLICE:
             return cls(last=count)
         raise LifeError(
-            f'record = "{text}"; allowed are "all", "every:N", and "last:N" up to {SLICE} steps'
+            f"record = {brief(text)};"
+            f' allowed are "all", "every:N", and "last:N" up to {SLICE} steps'
         )
 
 
@@ -191,7 +217,8 @@ def live(
     """
     setting = bring_together(mind, world, robot, check_functions=check_functions)
     choice = TraceChoice.parse(record)
-    check(seed, life, steps)
+    seed, life, steps = check(seed, life, steps)
+    callback("progress", progress, LifeError)
     return _live_on(birth(setting, seed, life), steps, choice, progress)
 
 
@@ -290,11 +317,10 @@ def _unfailing(moment: Moment, until: int, call: Callable[[], Any]) -> Any:
     return result
 
 
-def check(seed: int, life: int, steps: int) -> None:
-    """Refuse a seed, an index or a length that is none. Raises LifeError."""
-    if not 0 <= seed < 1 << 64:
-        raise LifeError(f"seed = {seed}; allowed are whole numbers from 0 to 2^64 - 1")
-    if not 0 <= life < 1 << 64:
-        raise LifeError(f"life = {life}; allowed are whole numbers from 0 to 2^64 - 1")
-    if not 0 < steps <= LONGEST:
-        raise LifeError(f"steps = {steps}; allowed are whole numbers from 1 to 2^50")
+def check(seed: int, life: int, steps: int) -> tuple[int, int, int]:
+    """Return a seed, an index and a length as ints. Raises LifeError for what is none."""
+    return (
+        whole("seed", seed, 0, MOST_64, LifeError),
+        whole("life", life, 0, MOST_63, LifeError),
+        whole("steps", steps, 1, LONGEST, LifeError),
+    )

@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
+from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING
 
@@ -16,10 +17,12 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
+from animat.arguments import MOST_63, callback, instance, sequence, whole
 from animat.life.batch import Batch, Progress
 from animat.life.life import check
 from animat.life.setting import LifeError, Setting, bring_together
 from animat.life.summary import NAMES, summary, without_failed
+from animat.life.table_files import to_pandas, write_csv
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
 from animat.numerics.threads import KernelThreads
@@ -27,6 +30,8 @@ from animat.robot.khepera import Khepera
 from animat.world.world import World
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from animat.report.estimates import Estimate
     from animat.report.survival import DeathCount
 
@@ -35,6 +40,8 @@ CHUNK, LARGEST_CHUNK = 32, 8192
 
 STEPS_OF_A_CHUNK = 2_000_000
 """What a chunk of short lives comes to, so that the table of it costs little beside them."""
+
+MOST_THREADS = 4_096
 
 TURNS = 8
 """How many times a thread takes a chunk at least, of lives enough."""
@@ -54,6 +61,17 @@ class Lives:
     def failed(self) -> int:
         """How many of them failed."""
         return self.table.num_rows - self.table["error"].null_count
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the table as one of pandas; needs pandas (`pip install animat[pandas]`).
+
+        Raises SettingsError without it.
+        """
+        return to_pandas(self.table)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the table as a CSV file, replacing what was there. Raises SettingsError."""
+        write_csv(self.table, path)
 
     def mean_lifespan(self) -> Estimate:
         """Return the mean lifespan in steps, restricted at the cap, and its 95 % interval.
@@ -116,10 +134,14 @@ def live_many(
     on, a RuntimeWarning tells of it, and the column `error` says why. With `check_functions`,
     custom functions check every index they use. Raises LifeError for what cannot be lived.
     """
+    callback("progress", progress, LifeError)
     if networks is not None:
+        networks = sequence("networks", networks, Networks, LifeError)
         if not networks:
             raise LifeError("networks is empty; give at least one")
-        mind = Mind(**{**dict(mind), "networks": networks[0]})
+        if any(one.weights.shape != networks[0].weights.shape for one in networks):
+            raise LifeError("networks differ in their form; all lives have the same")
+        mind = Mind(**{**dict(instance("mind", mind, Mind)), "networks": networks[0]})
     setting = bring_together(mind, world, robot, check_functions=check_functions)
     weights = None if networks is None else np.array([one.weights for one in networks])
     chunks = live_chunks(setting, seed, first, lives, steps, weights, threads, progress)
@@ -142,11 +164,13 @@ def live_chunks(
 
     Only as many chunks as there are threads are held at a time.
     """
-    check(seed, first, steps)
-    if lives < 1:
-        raise LifeError(f"lives = {lives}; allowed are whole numbers from 1")
+    seed, _, steps = check(seed, 0, steps)
+    first = whole("first", first, 0, MOST_63, LifeError)
+    lives = whole("lives", lives, 1, MOST_63 + 1 - first, LifeError)
+    if threads is None:
+        threads = os.cpu_count() or 1
+    threads = whole("threads", threads, 1, MOST_THREADS, LifeError)
     setting.begin(seed, np.array([first], np.uint64))  # a world without room is told of at once
-    threads = threads or os.cpu_count() or 1
     stop = Event()
     batch = Batch(setting, seed, steps, stop=stop, progress=progress)
     size = chunk_size(steps, lives, threads)

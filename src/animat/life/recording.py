@@ -18,14 +18,16 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from animat.files import whole
-from animat.life.difference import KEPT, Difference, kept_fields, kept_in, parted
+from animat import arguments, files
+from animat.arguments import callback, whole
+from animat.life.difference import Difference, kept_fields, kept_in, parted
 from animat.life.head import Head, ended, head_of, read_head
 from animat.life.kept import Kept, check_fields, keep, restored
-from animat.life.life import Life, Moment, Progress, birth, check, live_rows, lived
+from animat.life.life import LONGEST, Life, Moment, Progress, birth, check, live_rows, lived
 from animat.life.sealed import sealing, unseal
 from animat.life.setting import LifeError, Setting
 from animat.life.trace import row_dtype, table
+from animat.names import KEPT
 from animat.settings import SettingsError
 
 EVERY = 1_000
@@ -52,16 +54,15 @@ def write_recording(
     Raises:
         SettingsError: the life cannot be lived or recorded, or the file cannot be written.
     """
-    check(moment.seed, moment.index, steps)
-    if every < 1:
-        raise LifeError(f"every = {every}; allowed are whole numbers from 1")
+    _, _, steps = check(moment.seed, moment.index, steps)
+    every = whole("every", every, 1, LONGEST, LifeError)
     if moment.state.dead or moment.step >= steps:
         raise LifeError(f"after step {moment.step} there is nothing left to live up to {steps}")
     head = head_of(moment, steps, every, made)
     moment = moment.copy()
     tell = progress or (lambda _: None)
     part = _lived_part(moment, head, BLOCK, steps)
-    with whole(path) as partial, sealing(partial, part.schema) as file:
+    with files.whole(path) as partial, sealing(partial, part.schema) as file:
         while part.num_rows:
             begin = moment.step - part.num_rows
             file.write(part, f"steps {begin:,} to {moment.step - 1:,}")
@@ -82,7 +83,7 @@ class Recording:
     @classmethod
     def load(cls, path: str | Path) -> Recording:
         """Open a recording. Raises SettingsError where the file is none, or not as it was made."""
-        path = Path(path)
+        path = arguments.path("path", path)
         text, file = unseal(path)
         with _naming(path):
             head = read_head(text)
@@ -112,6 +113,7 @@ class Recording:
 
         Raises SettingsError where that was not recorded, or the life cannot be lived here.
         """
+        step = whole("step", step, error=LifeError)
         first, last = self.head.first, self.head.last
         if not first <= step <= last:
             raise LifeError(f"{self.path}: step {step} is not recorded, only {first} to {last} are")
@@ -132,6 +134,7 @@ class Recording:
         A life recorded from its birth is born again; another one is taken from its first moment.
         Raises SettingsError where it cannot be lived here.
         """
+        callback("progress", progress, LifeError)
         head, setting = self.head, self.setting
         again = self.at(head.first) if head.first else birth(setting, head.seed, head.life)
         with _naming(self.path):

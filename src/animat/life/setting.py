@@ -7,11 +7,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.arguments import instance
 from animat.life.birth import born, clear_biases, draw_weights, place
 from animat.mind.functions import BUILT_IN, Functions
 from animat.mind.mind import Mind
 from animat.mind.parameters import parameters
 from animat.mind.trial import Surroundings, try_functions
+from animat.mistakes import plain
+from animat.names import LIKELIHOOD, spelled
 from animat.robot.khepera import Khepera
 from animat.settings import SettingsError
 from animat.world.raster import Raster
@@ -81,7 +84,9 @@ def bring_together(
     tried; with `check_functions` they also check every index they use in every step. Raises
     LifeError, or FunctionError for a custom function that will not do.
     """
-    robot = robot or Khepera()
+    instance("mind", mind, Mind, LifeError)
+    instance("world", world, World, LifeError)
+    robot = Khepera() if robot is None else instance("robot", robot, Khepera, LifeError)
     mind_parameters = checked_parameters(mind, world)
     horizon = robot.radius + mind.encounter_range + world.resolution
     body, raster = robot.parameters(), world.raster(horizon)
@@ -110,7 +115,22 @@ def checked_parameters(mind: Mind, world: World) -> np.record:
             "consumed = true needs spare sites to put objects to: give the world some,"
             " world.with_spares(2), or spares = 2"
         )
+    if problems := _columns_twice(mind, world):
+        raise LifeError(*problems)
     try:
         return parameters(mind, world.affordances)
     except ValueError as error:
         raise LifeError(str(error)) from error
+
+
+def _columns_twice(mind: Mind, world: World) -> list[str]:
+    """Tell of behaviours and object types whose names together give a column twice."""
+    seen: dict[str, str] = {}
+    problems = []
+    for behaviour in mind.behaviours:
+        for kind in world.types:
+            (column,) = spelled([LIKELIHOOD], behaviour=[behaviour], object=[kind.name])
+            pair = f"behaviour {plain(behaviour)} with object type {plain(kind.name)}"
+            if (before := seen.setdefault(column, pair)) != pair:
+                problems.append(f"{pair} and {before} give one column, {column}")
+    return problems

@@ -71,7 +71,7 @@ def state_dtype(
                 # what it knows
                 ("features", real, (features,)),  # of the object met, as perceived
                 ("estimates", real, (behaviours,)),  # of the object met
-                ("likelihoods", real, (behaviours,)),  # held while a behaviour is not run
+                ("likelihoods", real, (behaviours,)),  # when last chosen; not a number before
                 ("weights", real, (behaviours, weights)),
                 # this step
                 ("reward", whole),

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from animat.mind.homeostasis import FAILURE, METABOLISM, SUCCESS
 from animat.mind.mind import Mind
+from animat.names import LIVES, spelled
 
 if TYPE_CHECKING:
     from animat.life.setting import Setting
@@ -65,7 +66,7 @@ def summary(
     for b, behaviour in enumerate(mind.behaviours):
         columns[f"acts_{behaviour}"] = pa.array(states["acts_by_behaviour"][:, b])
         columns[f"successes_{behaviour}"] = pa.array(states["successes_by_behaviour"][:, b])
-    return columns
+    return {name: columns[name] for name in spelled(LIVES, behaviour=mind.behaviours)}
 
 
 def without_failed(

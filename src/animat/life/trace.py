@@ -1,10 +1,14 @@
 """The trace of a life: what was sensed, felt, done and had of it, a row for each recorded step.
 
 A row holds the pose the robot sensed in, what it sensed and felt there, what it set its motors
-to, and what came of it (reward, event) in that step; the next row's pose is where that led.
+to, and what came of it (reward, event) in that step; the next row's pose is where that led. The
+row of a death holds the values of the variables that it was a death of.
 """
 
 from __future__ import annotations
+
+from itertools import chain
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -14,9 +18,13 @@ from animat.life.state import EVENTS, NO_SITE
 from animat.mind.behaviours import ACT, APPROACH, LEAVE, WANDER
 from animat.mind.drives import strongest
 from animat.mind.mind import Mind
+from animat.names import MODES, TRACE, spelled
 from animat.numerics.compiled import compiled
 from animat.robot.khepera import SENSORS
 from animat.world.world import World
+
+PLAIN = ("step", "x", "y", "heading", "left", "right", "site", "reward")
+"""The columns that hold a field of a row as it is."""
 
 
 def row_dtype(state: np.dtype) -> np.dtype:
@@ -55,38 +63,38 @@ def record_decision(row, state, limit):
 
 @compiled
 def record_outcome(row, state):
-    """Write down what came of the step."""
+    """Write down what came of the step; in a death, with the values that an act left."""
     row.reward = state.reward
     row.event = state.event
+    if state.dead:
+        for v in range(len(row.values)):
+            row.values[v] = state.values[v]
 
 
 def table(rows: NDArray[np.void], mind: Mind, world: World) -> pa.Table:
     """Return rows of the kernel as a table, with the names of the mind and of the world."""
-    variables, drives, behaviours = (
-        list(mind.resolved_variables()),
-        list(mind.drives),
-        list(mind.behaviours),
-    )
-    columns: dict[str, object] = {name: rows[name] for name in ("step", "x", "y", "heading")}
-    for n in range(SENSORS):
-        columns[f"infrared_{n}"] = rows["readings"][:, n]
-    columns["left"], columns["right"] = rows["left"], rows["right"]
-    for v, name in enumerate(variables):
-        columns[name] = rows["values"][:, v]
-    for d, name in enumerate(drives):
-        columns[name] = rows["drives"][:, d]
-    columns["winning_drive"] = _names(rows["winner"], drives)
-    columns["behaviour"] = _behaviour_names(rows, behaviours)
+    named = {
+        "sensor": map(str, range(SENSORS)),
+        "variable": list(mind.resolved_variables()),
+        "drive": list(mind.drives),
+        "behaviour": list(mind.behaviours),
+    }
     types = np.array([*world.layout.site_types(), len(world.types)])
-    columns["object"] = _names(
-        np.where(rows["site"] == NO_SITE, -1, types[rows["site"]]), [t.name for t in world.types]
-    )
-    columns["site"] = rows["site"]
-    for b, name in enumerate(behaviours):
-        columns[f"likelihood_{name}"] = rows["likelihoods"][:, b]
-    columns["reward"] = rows["reward"]
-    columns["event"] = _event_names(rows["event"])
-    return pa.table(columns)
+    objects = np.where(rows["site"] == NO_SITE, -1, types[rows["site"]])
+    said = rows["likelihoods"].T
+    values: dict[str, Any] = {name: [rows[name]] for name in TRACE if name in PLAIN}
+    values |= {
+        "infrared_{sensor}": rows["readings"].T,
+        "{variable}": rows["values"].T,
+        "{drive}": rows["drives"].T,
+        "winning_drive": [_names(rows["winner"], named["drive"])],
+        "behaviour": [_behaviour_names(rows, named["behaviour"])],
+        "object": [_names(objects, [kind.name for kind in world.types])],
+        "likelihood_{behaviour}": [pa.array(one, mask=np.isnan(one)) for one in said],
+        "event": [_event_names(rows["event"])],
+    }
+    names = spelled(TRACE, **named)
+    return pa.table(dict(zip(names, chain(*(values[each] for each in TRACE)), strict=True)))
 
 
 def _names(codes: NDArray[np.int64], names: list[str]) -> pa.Array:
@@ -100,7 +108,7 @@ def _behaviour_names(rows: NDArray[np.void], behaviours: list[str]) -> pa.Array:
     doing = {WANDER: 0, APPROACH: 1, LEAVE: 2}
     codes = np.select([rows["mode"] == mode for mode in doing], list(doing.values()), 0)
     codes = np.where(rows["mode"] == ACT, 3 + rows["behaviour"], codes)
-    return _names(codes, ["wander", "approach", "leave", *behaviours])
+    return _names(codes, [*MODES, *behaviours])
 
 
 def _event_names(events: NDArray[np.int64]) -> pa.Array:

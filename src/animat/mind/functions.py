@@ -7,7 +7,6 @@ fields that are not the user's hold a function that is never called.
 
 from __future__ import annotations
 
-import importlib.util
 import inspect
 import re
 from collections.abc import Callable
@@ -18,8 +17,10 @@ from weakref import WeakKeyDictionary
 from numba import types
 from numba.core.dispatcher import Dispatcher
 
+from animat.mind.loading import load
 from animat.numerics.checked import SelfCallError, checked
 from animat.numerics.compiled import compiled
+from animat.numerics.snapshot import share_identity, snapshot
 from animat.settings import SettingsError
 
 SIGNATURES = {
@@ -115,15 +116,14 @@ BUILT_IN = Functions(
 def resolve(role: str, function: str | Callable[..., Any], *, check: bool = False) -> Any:
     """Return the compiled form of a custom function for a role of `SIGNATURES`.
 
-    `function` is a Python function, or a text "FILE.py:NAME". It is compiled alone first, because
-    the compiler says far less clearly what is wrong with it in the midst of a step. With `check`,
-    every index it uses is checked whenever it is called. Raises FunctionError.
+    `function` is a Python function, or a text "FILE.py:NAME". What it computes by counts as it is
+    now, not as it was when a mind was made; see `snapshot`. It is compiled alone first, because the
+    compiler says far less clearly what is wrong with it in the midst of a step. With `check`, every
+    index it uses is checked whenever it is called. Raises FunctionError.
     """
     own: Any = _load(role, function) if isinstance(function, str) else function
-    if isinstance(own, Dispatcher):
-        own = own.py_func
-    _check_signature(role, own)
-    dispatcher = compiled(own)
+    _check_signature(role, own.py_func if isinstance(own, Dispatcher) else own)
+    dispatcher = snapshot(own)
     if isinstance(dispatcher, Dispatcher):
         twin = _check_compiles(role, dispatcher)
         return twin if check else dispatcher
@@ -140,15 +140,13 @@ def _load(role: str, address: str) -> Callable[..., Any]:
     path = Path(file)
     if not file or not path.is_file():
         raise FunctionError(
-            f'{role} = "{address}": no such built-in and no such file;'
+            f'{role} = "{address}": no such built-in and no such file in {Path.cwd()};'
             f" give FILE.py:NAME of a function {SIGNATURES[role]}"
         )
-    spec = importlib.util.spec_from_file_location(path.stem, path.resolve())
-    if spec is None or spec.loader is None:
+    if path.suffix != ".py":
         raise FunctionError(f'{role} = "{address}": {path} is not a Python file')
-    module = importlib.util.module_from_spec(spec)
     try:
-        spec.loader.exec_module(module)
+        module = load(path)
     except (Exception, SystemExit) as error:
         raise FunctionError(f"{role}: {path} does not run: {_one_line(error)}") from error
     found = getattr(module, name, None)
@@ -193,6 +191,7 @@ def _check_compiles(role: str, dispatcher: Any) -> Any:
             f"{role}: {name} uses flat or nditer, which could change what it is given; use indices"
         )
     _TWINS[dispatcher] = _TWINS[twin] = twin
+    share_identity(twin, dispatcher)
     return twin
 
 

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import ConfigDict, Field, field_validator, model_validator
 
+from animat.arguments import whole
 from animat.mind.affordance import weight_count
 from animat.mind.agents import AGENTS, Agent
+from animat.mind.changes import Complete, changing, removing
 from animat.mind.functions import BUILT_IN, Functions, resolve
 from animat.mind.networks import Networks
 from animat.mind.parameters import ESTIMATORS, LAWS, LEARNERS, SELECTORS, WANDERERS
 from animat.mind.physiology import PHYSIOLOGIES, Kind, Variable
 from animat.mistakes import plain
-from animat.settings import Settings, explain, nearest
+from animat.names import KEPT, MODES, TRACE, WHICH, name_problems
+from animat.settings import Settings, SettingsError, nearest
 
 Unit = Annotated[float, Field(ge=0.0, le=1.0)]
 
@@ -60,6 +63,24 @@ class Behaviour(Settings):
     failure: Effects | None = None
 
 
+PAPER_DRIVES = {
+    "hunger": Drive(a={"nutrition": 1.0}),
+    "fatigue": Drive(a={"stamina": 1.0}),
+    "curiosity": Drive(a={"restlessness": 1.0}),
+}
+PAPER_BEHAVIOURS = {
+    "eat": Behaviour(serves="hunger", needs="grasp"),
+    "shelter": Behaviour(serves="fatigue", needs="shelter"),
+    "interact": Behaviour(serves="curiosity", needs="interact"),
+}
+"""The drives and behaviours that every mind has, unless they are changed or removed."""
+
+
+_check_variables, _write_variables = removing(PHYSIOLOGIES["excess"], VariableChange)
+_check_drives, _write_drives = changing(PAPER_DRIVES, Drive)
+_check_behaviours, _write_behaviours = changing(PAPER_BEHAVIOURS, Behaviour)
+
+
 class Learning(Settings):
     """The affordance networks and their learning rule."""
 
@@ -85,25 +106,20 @@ class Learning(Settings):
 class Mind(Settings):
     """A mind: what it needs, what urges it, how it chooses, what it knows and how it learns.
 
-    The defaults are those of the paper; `networks` are those a robot has learnt, needed by the
-    agent AF. See docs/settings.md for every setting and the readings it stands for.
+    The defaults are those of the paper. What `variables`, `drives` and `behaviours` name is added
+    to those of the paper or takes the place of one; None or False removes one. `networks` are those
+    a robot has learnt, needed by the agent AF. docs/settings.md has every setting.
     """
 
     model_config = ConfigDict(arbitrary_types_allowed=True)
 
     agent: Literal["BLIND", "AF", "LEARNING", "ORACLE", "RANDOM"] = "BLIND"
     physiology: Literal["excess", "decay", "relax", "linear"] = "excess"
-    variables: dict[str, VariableChange] = {}
-    drives: dict[str, Drive] = {
-        "hunger": Drive(a={"nutrition": 1.0}),
-        "fatigue": Drive(a={"stamina": 1.0}),
-        "curiosity": Drive(a={"restlessness": 1.0}),
-    }
-    behaviours: dict[str, Behaviour] = {
-        "eat": Behaviour(serves="hunger", needs="grasp"),
-        "shelter": Behaviour(serves="fatigue", needs="shelter"),
-        "interact": Behaviour(serves="curiosity", needs="interact"),
-    }
+    variables: Annotated[dict[str, VariableChange], _check_variables, _write_variables] = {}
+    drives: Annotated[dict[str, Drive], _check_drives, _write_drives] = Complete(PAPER_DRIVES)
+    behaviours: Annotated[dict[str, Behaviour], _check_behaviours, _write_behaviours] = Complete(
+        PAPER_BEHAVIOURS
+    )
     lethal_margin: Annotated[float, Field(ge=0.0, lt=0.5)] | None = None
     overflow: Literal["clamp", "lethal"] = "clamp"
     failed_act: Literal["lethal", "clamp"] = "lethal"
@@ -153,7 +169,7 @@ class Mind(Settings):
     @model_validator(mode="after")
     def _consistent(self) -> Mind:
         variables = self.resolved_variables()
-        problems = _unknown_names(self, variables)
+        problems = [*_misnamed(self, variables), *_unknown_names(self, variables)]
         own_laws = _own_laws(variables)
         if len(set(own_laws.values())) > 1:
             problems.append(
@@ -186,16 +202,18 @@ class Mind(Settings):
     def resolved_variables(self) -> dict[str, Variable]:
         """Return the variables by name: the physiology's, changed and added to by `variables`.
 
-        Raises ValueError, with a line for each mistake, where a changed variable is impossible.
+        Raises SettingsError, with a line for each mistake, where a changed variable is impossible.
         """
-        resolved = dict(PHYSIOLOGIES[self.physiology])
+        changes = {name: each for name, each in self.variables.items() if each is not False}
+        removed = self.variables.keys() - changes.keys()
+        resolved = {n: v for n, v in PHYSIOLOGIES[self.physiology].items() if n not in removed}
         problems: list[str] = []
         if self.lethal_margin is not None:
-            changes = {"lethal_margin": self.lethal_margin}
+            margin = {"lethal_margin": self.lethal_margin}
             for name, variable in resolved.items():
                 if variable.lethal_margin > 0.0:
-                    resolved[name] = Variable(**{**dict(variable), **changes})
-        for name, change in self.variables.items():
+                    resolved[name] = Variable(**{**dict(variable), **margin})
+        for name, change in changes.items():
             settings = dict(resolved[name]) if name in resolved else {}
             if change.law is not None and change.kind is None:
                 settings.pop("kind", None)
@@ -208,10 +226,10 @@ class Mind(Settings):
                 continue
             try:
                 resolved[name] = Variable(**settings)
-            except ValidationError as error:
-                problems += explain(error, Variable, f"variables.{name}").problems
+            except SettingsError as error:
+                problems += [f"variables.{name}: {line}" for line in error.problems]
         if problems:
-            raise ValueError("\n".join(problems))
+            raise SettingsError(*problems)
         return resolved
 
     def own_functions(self) -> dict[str, Function]:
@@ -240,7 +258,8 @@ class Mind(Settings):
         return BUILT_IN._replace(**{role: resolve(role, own[role], check=check) for role in own})
 
     def weight_count(self, feature_count: int) -> int:
-        """Return the number of weights of one of its networks."""
+        """Return the number of weights of one of its networks. Raises SettingsError."""
+        feature_count = whole("feature_count", feature_count)
         return weight_count(feature_count, self.learning.hidden_units)
 
 
@@ -248,7 +267,20 @@ def _known(role: str, value: Any, known: dict[Any, int]) -> Any:
     """Let through a built-in name, a function, or FILE.py:NAME."""
     if isinstance(value, str) and value not in known and ".py:" not in value:
         raise ValueError(f"{plain(value)} is no {role}, nor FILE.py:NAME{nearest(value, known)}")
+    if not isinstance(value, Hashable):
+        raise ValueError("must be a function")
     return value
+
+
+def _misnamed(mind: Mind, variables: dict[str, Variable]) -> list[str]:
+    """Tell of names that cannot be columns of a trace, or are modes."""
+    tables = (TRACE, KEPT, WHICH)
+    modes = f"one of the modes {', '.join(MODES)}"
+    return [
+        *name_problems("variable", variables, tables=tables),
+        *name_problems("drive", mind.drives, tables=tables, others=[("a variable", variables)]),
+        *name_problems("behaviour", mind.behaviours, others=[(modes, MODES)]),
+    ]
 
 
 def _unknown_names(mind: Mind, variables: dict[str, Variable]) -> list[str]:

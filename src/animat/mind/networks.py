@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.arguments import instance, real, reals, sequence, whole
 from animat.mind.affordance import feed_forward, weight_count
+from animat.mind.networks_file import read_networks_file, write_networks_file
+from animat.mistakes import plain
+from animat.names import name_problems
 from animat.numerics.compiled import kernel
-from animat.settings import nearest
+from animat.settings import SettingsError, nearest
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,7 +28,7 @@ class Networks:
 
     `weights` [B, W], a row for each of `behaviours`; `features`, the names of the F inputs;
     `hidden`, the number of hidden units H. The weights are copied and cannot be changed. Raises
-    ValueError where there are not as many weights as the names ask for, or one is not finite.
+    SettingsError where there are not as many weights as the names ask for, or one is not finite.
     """
 
     behaviours: tuple[str, ...]
@@ -28,17 +38,24 @@ class Networks:
 
     def __post_init__(self) -> None:
         """Take a copy of the weights, and check that they fit."""
-        weights = np.array(self.weights, np.float64, order="C")
-        wanted = (len(self.behaviours), weight_count(len(self.features), self.hidden))
-        if self.hidden < 1 or weights.shape != wanted:
-            raise ValueError(
-                f"weights of shape {weights.shape} do not fit {len(self.behaviours)} networks of"
-                f" {len(self.features)} features and {self.hidden} hidden units: {wanted}"
+        behaviours = _names("behaviours", self.behaviours)
+        features = _names("features", self.features)
+        hidden = whole("hidden", self.hidden, 1)
+        weights = reals("weights", self.weights)
+        wanted = (len(behaviours), weight_count(len(features), hidden))
+        if weights.shape != wanted:
+            raise SettingsError(
+                f"weights of shape {weights.shape} do not fit {len(behaviours)} networks of"
+                f" {len(features)} features and {hidden} hidden units: {wanted}"
             )
-        if not np.isfinite(weights).all():
-            raise ValueError("weights of networks must be finite numbers")
         weights.setflags(write=False)
-        object.__setattr__(self, "weights", weights)
+        for name, value in (
+            ("behaviours", behaviours),
+            ("features", features),
+            ("hidden", hidden),
+            ("weights", weights),
+        ):
+            object.__setattr__(self, name, value)
 
     def __eq__(self, other: object) -> bool:
         """Tell whether two networks have the same names and the same weights."""
@@ -54,21 +71,83 @@ class Networks:
     def likelihoods(self, features: dict[str, float]) -> dict[str, float]:
         """Return for each behaviour how likely an object with these features is to afford it.
 
-        Raises ValueError where the features are not those the networks know.
+        Raises SettingsError where the features are not those the networks know.
 
         >>> life.networks.likelihoods({"shape": 1.0, "size": 0.0})  # doctest: +SKIP
         {'eat': 0.97, 'shelter': 0.02, 'interact': 0.99}
         """
-        for name in features:
+        for name in instance("features", features, Mapping):
             if name not in self.features:
-                raise ValueError(f'"{name}" is no feature{nearest(name, self.features)}')
+                raise SettingsError(
+                    f"{plain(name)} is no feature{nearest(str(name), self.features)}"
+                )
         missing = [name for name in self.features if name not in features]
         if missing:
-            raise ValueError(f"features lack {', '.join(missing)}")
-        inputs = np.array([features[name] for name in self.features])
+            raise SettingsError(f"features lack {', '.join(missing)}")
+        inputs = np.array([real(f"features.{name}", features[name]) for name in self.features])
         outputs = np.zeros(len(self.behaviours))
         ask(inputs, self.weights, np.zeros(self.hidden), outputs)
         return dict(zip(self.behaviours, outputs.tolist(), strict=True))
+
+    @classmethod
+    def load(cls, path: str | Path) -> Networks:
+        """Return the networks of a file that `save` wrote, to the last bit.
+
+        Raises SettingsError, with a line for everything that is wrong with the file.
+        """
+        file = read_networks_file(Path(path))
+        return cls(tuple(file.weights), file.features, file.hidden, file.matrix())
+
+    def save(self, path: str | Path) -> None:
+        """Write the networks as a TOML file, replacing what was there. Raises SettingsError."""
+        write_networks_file(
+            Path(path), self.behaviours, self.features, self.hidden, np.asarray(self.weights)
+        )
+
+    def figure(self, objects: Mapping[str, Mapping[str, float]] | None = None) -> Figure:
+        """Draw what each network says, and its weights.
+
+        Networks of two features are drawn as a surface over both, others as a bar for each object.
+        `objects` are the features of object types by their names, such as
+        `{kind.name: kind.features for kind in world.types}`. Raises ValueError where these are not
+        the features the networks know.
+        """
+        from animat.report.figures.networks import SURFACE, networks_figure
+
+        named = {name: dict(features) for name, features in (objects or {}).items()}
+        said = [list(self.likelihoods(features).values()) for features in named.values()]
+        places = np.array([[each[f] for f in self.features] for each in named.values()])
+        return networks_figure(
+            self.behaviours,
+            self.features,
+            self._layers(),
+            self._surface(SURFACE) if len(self.features) == 2 else None,
+            dict(zip(named, zip(places, said, strict=True), strict=True)),
+        )
+
+    def _surface(self, along: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the likelihoods [B, N, N] at N values of the second and of the first feature."""
+        said = np.zeros((len(self.behaviours), len(along), len(along)))
+        outputs, hidden = np.zeros(len(self.behaviours)), np.zeros(self.hidden)
+        for row, second in enumerate(along):
+            for column, first in enumerate(along):
+                ask(np.array([first, second]), self.weights, hidden, outputs)
+                said[:, row, column] = outputs
+        return said
+
+    def _layers(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        """Return of each network the weights, biases first: hidden [H, 1 + F], output [1 + H]."""
+        cut = self.hidden * (len(self.features) + 1)
+        return [(each[:cut].reshape(self.hidden, -1), each[cut:]) for each in self.weights]
+
+
+def _names(what: str, given: Any) -> tuple[str, ...]:
+    names = sequence(what, given, str)
+    problems = name_problems(what, names)
+    problems += [f"{what} {plain(name)} is there twice" for name in names if names.count(name) > 1]
+    if problems:
+        raise SettingsError(*dict.fromkeys(problems))
+    return names
 
 
 @kernel

@@ -7,7 +7,7 @@ variable follows the paper leaves open, so each reading has a name.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
@@ -56,6 +56,8 @@ class Variable(Settings):
                 )
         if self.lethal_margin >= self.high - self.low:
             raise ValueError(f"lethal_margin = {self.lethal_margin} leaves no viability zone")
+        if not isinstance(self.law, Hashable):
+            raise ValueError("law must be a function, or the name of one")
         if isinstance(self.law, str) and self.law not in BY_NAME and ".py:" not in self.law:
             raise ValueError(
                 f"law = {plain(self.law)} is no law, nor FILE.py:NAME{nearest(self.law, BY_NAME)}"

@@ -13,11 +13,23 @@ from animat.report.figures.style import spread_out
 from animat.report.figures.survival import level_curves_figure
 from animat.report.figures.trend import trend_figure
 from animat.report.levels import Level
-from animat.report.margins import Margin
-from animat.report.page import Picture, TableBlock, interval, p_value, picture
+from animat.report.margins import Comparison, Margin
+from animat.report.page import NOT_KNOWN, Picture, TableBlock, interval, p_value, picture
 from animat.report.sample import Sample, case_means
 
 T = TypeVar("T")
+
+PAIRED = (
+    "Pairs", "Ratio of mean lifespans", "Difference (steps)", "Outlives in", "Ties in",
+    "Rank-biserial",
+)  # fmt: skip
+PAIRED_NOTE = (
+    "A pair is two lives with the same seed and index, which share their starting pose and random"
+    " numbers. Difference: mean within pairs. Outlives in: share of pairs in which the life at the"
+    " level named first is the longer; pairs that both go on at the cap are ties. Rank-biserial:"
+    " matched-pairs rank-biserial correlation, from -1 to 1, ties counting for neither. p does not"
+    " use the pairs, so it can miss a difference that the intervals show. "
+)
 
 ROWS_AT_MOST = 40
 """Of more levels or comparisons than this, the first and the last are shown."""
@@ -99,25 +111,46 @@ def _share(one: Level, ways: Sequence[str]) -> str:
 
 
 def comparisons_table(margin: Margin, corrected: Sequence[float], tests: int) -> TableBlock:
-    """The levels of a factor against the first; `corrected` are the p values for all `tests`."""
+    """The levels of a factor against the first; `corrected` are the p values for all `tests`.
+
+    Where lives are paired, so are the effect sizes.
+    """
+    paired = any(one.paired for one in margin.comparisons)
+    sizes = PAIRED if paired else ("Lives", "Ratio of mean lifespans", "Cliff's delta")
     rows = [
         (
             f"{one.level} against {one.reference}",
             one.where or "over all",
-            f"{one.lives:,}",
-            interval(one.ratio, ".2f"),
-            interval(one.delta, ".2f"),
+            *(_paired_sizes(one) if paired else _sizes(one)),
             p_value(one.test.p),
             p_value(p),
         )
         for one, p in zip(margin.comparisons, corrected, strict=True)
     ]
     return TableBlock(
-        ("Levels", "Where", "Lives", "Ratio of mean lifespans", "Cliff's delta", "p", "p, Holm"),
+        ("Levels", "Where", *sizes, "p", "p, Holm"),
         first_and_last(rows, ROWS_AT_MOST),
         f"p: {margin.comparisons[0].test.name}. p, Holm: corrected for the {tests} comparisons of"
-        f" levels on this page. {_left_out(rows)}".strip(),
+        f" levels on this page. {PAIRED_NOTE if paired else ''}{_left_out(rows)}".strip(),
         title=f"Against {margin.levels[0].label}",
+    )
+
+
+def _sizes(one: Comparison) -> tuple[str, ...]:
+    return f"{one.lives:,}", interval(one.ratio, ".2f"), interval(one.delta, ".2f")
+
+
+def _paired_sizes(one: Comparison) -> tuple[str, ...]:
+    ratio = interval(one.ratio, ".2f")
+    if one.paired is None:
+        return "0", ratio, *[NOT_KNOWN] * 4
+    return (
+        f"{one.paired.pairs:,}",
+        ratio,
+        interval(one.paired.difference, ",.0f"),
+        interval(one.paired.outlives, ".1%"),
+        f"{one.paired.ties:.1%}",
+        interval(one.paired.rank_biserial, ".2f"),
     )
 
 

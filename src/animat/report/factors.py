@@ -11,6 +11,8 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from animat.report.numerals import numerals
+
 LEVELS_AT_MOST = 8
 """A factor of more different numbers is a range. A figure tells so many curves apart, too."""
 
@@ -39,7 +41,8 @@ class Factor(NamedTuple):
         """The value of one life in words: its level, or its number where that is a quarter."""
         if self.values is None or np.isnan(self.values[row]):
             return self.levels[self.codes[row]]
-        return _label(float(self.values[row]))
+        known = self.values[~np.isnan(self.values)]
+        return numerals(np.unique(known).tolist())[float(self.values[row])]
 
 
 def factor(table: pa.Table, name: str) -> Factor:
@@ -66,7 +69,9 @@ def factor(table: pa.Table, name: str) -> Factor:
     ordered = [distinct[k] for k in order]
     if numeric and sum(value is not None for value in ordered) > LEVELS_AT_MOST:
         return _range(name, ordered, exact)
-    return Factor(name, tuple(_label(value) for value in ordered), exact, exact, None, numeric)
+    said = numerals(value for value in ordered if value is not None) if numeric else {}
+    levels = tuple(said.get(value) or _label(value) for value in ordered)
+    return Factor(name, levels, exact, exact, None, numeric)
 
 
 def _range(name: str, distinct: Sequence[float | None], exact: NDArray[np.int64]) -> Factor:
@@ -86,18 +91,11 @@ def _range(name: str, distinct: Sequence[float | None], exact: NDArray[np.int64]
 
 def _apart(ends: Sequence[tuple[float, float]]) -> list[str]:
     """The quarters by their ends, with as many digits as tell these apart."""
-    for digits in range(3, 18):
-        words = [tuple(f"{end:.{digits}g}" for end in pair) for pair in ends]
-        if len({word for pair in words for word in pair}) == len(
-            {e for pair in ends for e in pair}
-        ):
-            break
-    return [f"{low} to {high}" if low != high else low for low, high in words]
+    said = numerals((float(end) for pair in ends for end in pair), digits=3)
+    return [f"{said[low]} to {said[high]}" if low != high else said[low] for low, high in ends]
 
 
 def _label(value: object) -> str:
     if value is None:
         return NOT_SET
-    if isinstance(value, bool):
-        return str(value).lower()
-    return f"{value:.12g}" if isinstance(value, float) else str(value)
+    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -12,6 +12,7 @@ from animat.report.margins import Margin, margin
 from animat.report.multiple import holm
 from animat.report.resampling import Sets, ratio_over, sets_of
 from animat.report.sample import Sample, sample
+from animat.report.two_factors import Interaction, interactions
 
 RESAMPLES = 1_999
 """Bootstrap resamples of each interval: its ends move by some 3 % of its width by chance."""
@@ -25,8 +26,11 @@ class Findings(NamedTuple):
 
     `cases` is empty where there are too many, or only one factor tells them apart; `varying` are
     the factors that do. `by_behaviour`
-    is the share of acts that succeed. `factors_p` [margins] and `levels_p` [all comparisons, margin
-    after margin] are p values by Holm's correction, each over all tests of its kind.
+    is the share of acts that succeed. `interactions` are those of the pairs of told factors that
+    are crossed, none where nobody died. The p values are by Holm's correction, each over all tests
+    of its kind: `factors_p` [margins], `levels_p` [all comparisons, margin after margin],
+    `interactions_p` [interactions] and `contrasts_p` [all contrasts, interaction after
+    interaction]; the latter two of differences and of ratios, all corrected together.
     """
 
     lives: Sample
@@ -37,6 +41,9 @@ class Findings(NamedTuple):
     margins: tuple[Margin, ...]
     factors_p: tuple[float, ...]
     levels_p: tuple[float, ...]
+    interactions: tuple[Interaction, ...]
+    interactions_p: tuple[tuple[float, float], ...]
+    contrasts_p: tuple[tuple[float, float], ...]
     resampled: str
 
     @property
@@ -68,17 +75,30 @@ def find(
     sampled = any(not each.matched and not each.confounded for each in margins)
     sets = sets_of(lives.number, lives.case, None if sampled else lives.case)
     comparisons = [one for each in margins for one in each.comparisons]
+    overall = level(lives, everyone, ("all",), sets, measures, **how)
+    died = overall.summary.alive < overall.summary.lives
+    both = interactions(lives, told, **how) if died else ()
+    contrasts = [one for each in both for one in each.contrasts]
     return Findings(
         lives,
-        level(lives, everyone, ("all",), sets, measures, **how),
+        overall,
         _by_behaviour(table, sets, seed, resamples),
         tuple(varying),
         _cases(lives, varying, measures, seed, resamples),
         margins,
         tuple(holm([each.test.p for each in margins]).tolist()),
         tuple(holm([one.test.p for one in comparisons]).tolist()),
+        both,
+        _both_scales([(each.differences.p, each.ratios.p) for each in both]),
+        _both_scales([(one.difference_p, one.ratio_p) for one in contrasts]),
         sets.what,
     )
+
+
+def _both_scales(p: Sequence[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+    """The p values of differences and of ratios [n, 2], corrected together."""
+    corrected = holm([each for pair in p for each in pair]).tolist()
+    return tuple(zip(corrected[::2], corrected[1::2], strict=True))
 
 
 def _by_behaviour(

@@ -18,6 +18,7 @@ from animat.report.factors import Factor
 from animat.report.levels import Level, level
 from animat.report.lives import lifespans
 from animat.report.logrank import Significance, stratified_logrank
+from animat.report.paired import PairedEffects, paired_effects
 from animat.report.resampling import SETS_AT_LEAST, codes_of, quotient_over, sets_of
 from animat.report.sample import Sample, case_means, other_combinations
 
@@ -31,6 +32,8 @@ class Comparison(NamedTuple):
 
     `where` is the combination of the other factors it is made in, empty if over all of them;
     `lives` is how many lives of both levels it rests on; `ratio` is of restricted mean lifespans.
+    `paired` is None where levels have no lives that share their random numbers in the same
+    combination.
     """
 
     level: str
@@ -39,6 +42,7 @@ class Comparison(NamedTuple):
     lives: int
     ratio: Estimate
     delta: Estimate
+    paired: PairedEffects | None
     test: Significance
 
 
@@ -128,13 +132,18 @@ def _compare(
     one = chosen.codes[rows] == compared[0]
     steps = lives.steps[rows]
     ours, theirs = (steps[one], sets.take(one)), (steps[~one], sets.take(~one))
+    how = {"seed": seed, "resamples": resamples}
+    pairs = None
+    if within is not None and lives.paired:
+        pairs = paired_effects(steps, one, codes_of(within[rows], number), sets, **how)
     return Comparison(
         chosen.levels[compared[0]],
         chosen.levels[compared[1]],
         where,
         int(rows.sum()),
-        quotient_over(*ours, *theirs, seed=seed, resamples=resamples),
+        quotient_over(*ours, *theirs, **how),
         cliffs_delta(*ours, *theirs),
+        pairs,
         _test_of(lives, chosen, rows, within),
     )
 

@@ -37,16 +37,22 @@ class Sets(NamedTuple):
         return self._replace(codes=self.codes[rows])
 
 
+def paired(seed: NDArray, life: NDArray, case: NDArray[np.int64]) -> bool:
+    """Whether lives of different cases share their random numbers: a seed and index in common."""
+    drawn = codes_of(seed, life)
+    return len(np.unique(drawn)) < len(np.unique(codes_of(case, drawn)))
+
+
 def numbers(seed: NDArray, life: NDArray, case: NDArray[np.int64]) -> NDArray[np.int64]:
     """The number of each of n lives: equal for lives that share their luck.
 
     Where every case has lucks of its own, the first life of each has number 0, and so on:
     independent lives may be put together in any way. All arrays are [n].
     """
-    lucks, luck = np.unique(codes_of(seed, life), return_inverse=True)
+    luck = codes_of(seed, life)
+    if paired(seed, life, case):
+        return luck
     lived, place = np.unique(codes_of(case, luck), return_inverse=True)
-    if len(lucks) < len(lived):
-        return luck.astype(np.int64)
     first = np.zeros(len(lived), dtype=case.dtype)
     first[place] = case
     return (place - np.searchsorted(first, case)).astype(np.int64)
@@ -126,6 +132,26 @@ def quotient_over(
     if not totals[0].any() or not totals[2].any():
         return UNKNOWN
     return _of(totals, lambda a, n, b, m: (a / n) / (b / m), seed, resamples)
+
+
+def share_over(hits: NDArray[np.bool_], sets: Sets) -> Estimate:
+    """The share of `hits` [n], at least one, with Wilson's interval.
+
+    The interval counts as many independent hits and misses as would make the share vary as much
+    as it does between sets (Korn and Graubard 1998): all n where every set has one, never more,
+    and one from each set where nothing varies.
+    """
+    used, codes = np.unique(sets.codes, return_inverse=True)
+    n, count, value = len(hits), len(used), float(hits.mean())
+    if count < 2:
+        return Estimate(value, float("nan"), float("nan"))
+    surplus = np.bincount(codes, hits - value, count)
+    variance = float(surplus @ surplus) / n**2
+    n = min(n, value * (1 - value) / variance) if variance > 0 else count
+    z2 = stats.norm.ppf((1 + LEVEL) / 2) ** 2
+    middle = (value + z2 / (2 * n)) / (1 + z2 / n)
+    half = np.sqrt(z2 * (value * (1 - value) / n + z2 / (4 * n**2))) / (1 + z2 / n)
+    return Estimate(value, max(0.0, float(middle - half)), min(1.0, float(middle + half)))
 
 
 def median_over(

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from animat.report.factors import Factor, factor
 from animat.report.lives import column, lifespans, restriction
-from animat.report.resampling import codes_of, numbers
+from animat.report.resampling import codes_of, numbers, paired
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,8 @@ class Sample:
     """The lives of a study, read once. Arrays are [n], a life each.
 
     `steps` are lifespans cut at `cap`, the step up to which every life was watched (infinite if
-    all died); `case` and `number` are codes: lives of one number share their luck.
+    all died); `case` and `number` are codes. Where the design is `paired`, lives of one number
+    share their starting pose and random numbers in all cases.
     """
 
     table: pa.Table
@@ -26,14 +27,15 @@ class Sample:
     cap: float
     case: NDArray[np.int64]
     number: NDArray[np.int64]
+    paired: bool
 
     def factor(self, name: str) -> Factor:
         """The factor of that name."""
         return next(each for each in self.factors if each.name == name)
 
-    def others(self, name: str) -> list[Factor]:
-        """All factors but the one of that name."""
-        return [each for each in self.factors if each.name != name]
+    def others(self, *names: str) -> list[Factor]:
+        """All factors but those of these names."""
+        return [each for each in self.factors if each.name not in names]
 
 
 def sample(table: pa.Table, names: Sequence[str]) -> Sample:
@@ -51,8 +53,8 @@ def sample(table: pa.Table, names: Sequence[str]) -> Sample:
         case = _combinations(factors, table.num_rows)
     cap = restriction([table])
     steps = np.minimum(lifespans(table).steps, cap)
-    number = numbers(column(table, "seed"), column(table, "life"), case)
-    return Sample(table, factors, steps, cap, case, number)
+    drawn = column(table, "seed"), column(table, "life"), case
+    return Sample(table, factors, steps, cap, case, numbers(*drawn), paired(*drawn))
 
 
 def case_means(lives: Sample, chosen: Factor) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -66,10 +68,10 @@ def case_means(lives: Sample, chosen: Factor) -> tuple[NDArray[np.int64], NDArra
     return first, np.bincount(codes, lives.steps) / np.bincount(codes)
 
 
-def other_combinations(lives: Sample, name: str) -> NDArray[np.int64]:
-    """The combination [n] of the other factors, those that hold the very same lives as one."""
-    place = _combinations(lives.others(name), len(lives.steps))
-    content = codes_of(lives.factor(name).exact, lives.case)
+def other_combinations(lives: Sample, *names: str) -> NDArray[np.int64]:
+    """The combination [n] of all other factors, those that hold the very same lives as one."""
+    place = _combinations(lives.others(*names), len(lives.steps))
+    content = codes_of(*(lives.factor(name).exact for name in names), lives.case)
     rows = np.unique(np.stack([place, content]), axis=1)
     starts = np.flatnonzero(np.diff(rows[0], prepend=-1))
     seen: dict[bytes, int] = {}

@@ -16,11 +16,12 @@ from animat.report.blocks import (
     trend_picture,
 )
 from animat.report.estimates import LEVEL
-from animat.report.figures.style import shortened
 from animat.report.findings import Findings
 from animat.report.levels import Level
 from animat.report.margins import Margin
+from animat.report.numerals import shortened
 from animat.report.page import Picture, Section, TableBlock, interval, p_value
+from animat.report.two_factor_sections import interaction_sections, interactions_in_short
 
 NOBODY_DIED = (
     "No life ended before its cap, so lifespans tell nothing apart here, and are not compared."
@@ -50,6 +51,7 @@ def in_short(found: Findings) -> list[str]:
             _factor_in_short(margin, p)
             for margin, p in sorted(pairs, key=lambda pair: -longest_to_shortest(pair[0]))
         ]
+        told += interactions_in_short(found)
     return told
 
 
@@ -60,7 +62,8 @@ def result_sections(found: Findings) -> list[Section]:
         sections.append(cases_section(found))
     if len(found.margins) > 1:
         sections.append(factors_section(found))
-    return [*sections, *(margin_section(found, place) for place in range(len(found.margins)))]
+    sections += [margin_section(found, place) for place in range(len(found.margins))]
+    return [*sections, *interaction_sections(found)]
 
 
 def overall_section(found: Findings) -> Section:
@@ -166,9 +169,10 @@ def _factor_in_short(margin: Margin, corrected: float) -> str:
     longest = max(margin.levels, key=lambda one: one.summary.mean.value)
     shortest = min(margin.levels, key=lambda one: one.summary.mean.value)
     low, high = shortest.summary.mean.value, longest.summary.mean.value
+    said = shortened(one.label for one in margin.levels)
     ends = (
-        f"mean lifespans from {low:,.0f} ({shortened(shortest.label)}) to {high:,.0f} steps"
-        f" ({shortened(longest.label)})"
+        f"mean lifespans from {low:,.0f} ({said[shortest.label]}) to {high:,.0f} steps"
+        f" ({said[longest.label]})"
         if low < high
         else f"mean lifespan {low:,.0f} steps at every level"
     )
@@ -182,13 +186,13 @@ def _factor_in_short(margin: Margin, corrected: float) -> str:
 
 def _how_compared(margin: Margin, *, alone: bool) -> str:
     if alone:
-        return "Nothing else differs between the lives of this study."
+        return "It is the only factor of this study."
     if margin.confounded:
         return "Levels are compared as they are."
     if margin.matched:
         return (
             "Levels are compared within the combinations of the other factors that both have, so"
-            " that nothing else differs."
+            " that no other factor differs between them."
         )
     return (
         "The cases differ in other factors as well, so they are compared as a sample, by their"

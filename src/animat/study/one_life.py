@@ -6,21 +6,28 @@ trace and for its figure, and memory does not grow with its length.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-import pyarrow.parquet as pq
+import pyarrow as pa
+from pydantic import ValidationError
 
+from animat import arguments
+from animat.arguments import callback
 from animat.files import check_writable, whole
 from animat.life.life import Life, Moment, Progress, TraceChoice, birth, check, live, lived
 from animat.life.recording import EVERY, Recording, write_recording
-from animat.life.setting import LifeError, bring_together
+from animat.life.setting import LifeError, bring_together, checked_parameters
+from animat.life.table_files import write_tables
 from animat.life.trace import table
 from animat.mind.mind import Mind
+from animat.mind.networks import Networks
 from animat.progress import Telling
 from animat.robot.khepera import Khepera
-from animat.settings import SettingsError
+from animat.settings import SettingsError, explain
 from animat.study.design.settings import LifeSettings
+from animat.study.living.identity import networks_matter
 from animat.study.provenance import provenance
 from animat.world.world import World
 
@@ -29,9 +36,6 @@ STEPS = 300_000
 
 LEARNING_STEPS = 300_000
 """How long AF has learnt before it lives, as in Experiment 1."""
-
-FIGURE_ROWS = 300_000
-"""How many steps of a life a figure is drawn from at most; of a longer one, every n-th."""
 
 DRAWINGS = (".svg", ".png", ".pdf")
 
@@ -42,7 +46,8 @@ class OneLife(NamedTuple):
     It is born with the settings, seed and index, or, if there is a `source`, taken from that
     recording where it has lived `at` steps, all that were recorded if None. It is lived up to
     `steps`: 300,000 if None, or what the recording says. `every` is EVERY if None. With
-    `check_functions`, custom functions check every index they use.
+    `check_functions`, custom functions check every index they use. `networks` are read at birth,
+    `save_networks` written at the end.
     """
 
     settings: LifeSettings
@@ -57,6 +62,8 @@ class OneLife(NamedTuple):
     source: Path | None = None
     at: int | None = None
     check_functions: bool = False
+    networks: Path | None = None
+    save_networks: Path | None = None
 
 
 def live_one(asked: OneLife, tell: Telling) -> Life:
@@ -84,12 +91,22 @@ def live_one(asked: OneLife, tell: Telling) -> Life:
         life = moment.live(steps, progress=progress)
     if asked.trace:
         with whole(asked.trace) as partial:
-            _write_trace(moment.copy(), life.lifespan, partial)
+            write_tables(
+                _trace(moment.copy(), life.lifespan),
+                partial,
+                csv=asked.trace.suffix.lower() == ".csv",
+            )
     if asked.figure:
-        every = max(1, (life.lifespan - moment.step) // FIGURE_ROWS)
-        drawn = moment.live(steps, record=f"every:{every}").figure()
+        from animat.life.drawing import draw_life
+
+        mind, world = moment.setting.mind, moment.setting.world
+        rows = lived(moment.copy(), life.lifespan, TraceChoice())
+        parts = (table(part, mind, world) for part in rows)
+        drawn = draw_life(life, parts, (moment.step, life.lifespan))
         with whole(asked.figure) as partial:
             drawn.savefig(partial, format=asked.figure.suffix[1:].lower())
+    if asked.save_networks:
+        life.networks.save(asked.save_networks)
     return life
 
 
@@ -112,11 +129,13 @@ def record(
     one is whole. Raises SettingsError for what cannot be lived, recorded or written; a life that
     fails (FailedLifeError) leaves no file.
     """
-    check(seed, life, steps)
+    seed, life, steps = check(seed, life, steps)
+    callback("progress", progress, LifeError)
     setting = bring_together(mind, world, robot, check_functions=check_functions)
     moment = birth(setting, seed, life)
+    file = arguments.path("path", path)
     return write_recording(
-        Path(path), moment, steps=steps, every=every, made=provenance(), progress=progress
+        file, moment, steps=steps, every=every, made=provenance(), progress=progress
     )
 
 
@@ -161,6 +180,8 @@ def _born(asked: OneLife, tell: Telling) -> tuple[Moment, int]:
     check(asked.seed, asked.index, steps)
     settings = asked.settings
     world, mind = settings.world.world(), settings.mind
+    if asked.networks is not None:
+        mind = _knowing(mind, world, asked.networks)
     if mind.agent == "AF" and mind.networks is None:
         learnt = live(
             mind.model_copy(update={"agent": "LEARNING"}),
@@ -175,6 +196,21 @@ def _born(asked: OneLife, tell: Telling) -> tuple[Moment, int]:
         mind = mind.model_copy(update={"networks": learnt.networks})
     setting = bring_together(mind, world, settings.robot, check_functions=asked.check_functions)
     return birth(setting, asked.seed, asked.index), steps
+
+
+def _knowing(mind: Mind, world: World, path: Path) -> Mind:
+    """Return a mind with the networks of a file. Raises SettingsError where they do not fit."""
+    networks = Networks.load(path)
+    try:
+        knowing = Mind(**{**dict(mind), "networks": networks})
+        record = checked_parameters(knowing, world)
+    except ValidationError as error:
+        raise explain(error, Mind, str(path)) from None
+    except LifeError as error:
+        raise LifeError(*(f"{path}: {line}" for line in error.problems)) from None
+    if not networks_matter(record):
+        raise LifeError(f"{path}: the agent {mind.agent} asks no networks; take AF or LEARNING")
+    return knowing
 
 
 def _recorded(source: Path, asked: OneLife) -> tuple[Moment, int]:
@@ -196,21 +232,18 @@ def _recorded(source: Path, asked: OneLife) -> tuple[Moment, int]:
     return moment, steps
 
 
-def _write_trace(moment: Moment, until: int, path: Path) -> None:
-    """Live a life on, in place, and write a row for every step, a part at a time."""
+def _trace(moment: Moment, until: int) -> Iterator[pa.Table]:
+    """Live a life on, in place, and yield a row for every step, a part at a time."""
     mind, world = moment.setting.mind, moment.setting.world
-    parts = lived(moment, until, TraceChoice())
-    first = table(next(parts), mind, world)
-    with pq.ParquetWriter(path, first.schema) as writer:
-        writer.write_table(first)
-        for part in parts:
-            writer.write_table(table(part, mind, world))
+    for part in lived(moment, until, TraceChoice()):
+        yield table(part, mind, world)
 
 
 def _check_files(asked: OneLife) -> None:
     """Refuse, before any work, files that could not be written at its end."""
     for path, suffixes in (
-        (asked.trace, (".parquet",)),
+        (asked.trace, (".parquet", ".csv")),
+        (asked.save_networks, (".toml",)),
         (asked.figure, DRAWINGS),
         (asked.record, (".parquet",)),
     ):

@@ -21,6 +21,8 @@ from animat.report.multiverse.sensitivity import sobol_table
 from animat.settings import SettingsError
 from animat.study.design.factors import Range
 from animat.study.design.study import Study
+from animat.study.page.inputs import inputs_sections
+from animat.study.page.words import word
 from animat.study.provenance import provenance
 from animat.study.store.results import Results
 
@@ -115,6 +117,7 @@ def publish(found: Sensitivity, directory: Path, command: str) -> None:
                 paragraphs=[f"{command} makes the same again; it goes on where it was ended."],
                 code=study.to_toml() + "\n" + json.dumps(provenance(), indent=2),
             ),
+            *inputs_sections(directory),
         ],
         lead=[_lead(found)],
     )
@@ -180,7 +183,8 @@ def _ranges(study: Study) -> page.TableBlock:
     rows = []
     for key, over in sample.over.items():
         spread = (
-            f"{over.low:g} to {over.high:g}{', by its logarithm' if over.scale == 'log' else ''}"
+            f"{word(over.low)} to {word(over.high)}"
+            f"{', by its logarithm' if over.scale == 'log' else ''}"
             if isinstance(over, Range)
             else ", ".join(map(str, over))
         )

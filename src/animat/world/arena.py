@@ -8,8 +8,11 @@ from pydantic import Field, model_validator
 
 from animat.settings import Settings
 
-Length = Annotated[float, Field(gt=0)]
-Margin = Annotated[float, Field(ge=0)]
+LONGEST = 1e7
+"""mm; 10 km, more than a raster can hold."""
+
+Length = Annotated[float, Field(gt=0, le=LONGEST)]
+Margin = Annotated[float, Field(ge=0, le=LONGEST)]
 
 
 class Arena(Settings):

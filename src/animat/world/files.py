@@ -32,6 +32,7 @@ import tomli_w
 from pydantic import AfterValidator, Field, ValidationInfo
 
 from animat.files import write_whole
+from animat.names import malformed
 from animat.settings import Settings, SettingsError, nearest, read_toml
 from animat.world.arena import Arena
 from animat.world.layout import MINIMUM_GAP, Layout, Placement
@@ -50,13 +51,22 @@ def _known_type(site: Placement, info: ValidationInfo) -> Placement:
     return site
 
 
+def _writable(name: str) -> str:
+    if problem := malformed(name):
+        raise ValueError(problem)
+    return name
+
+
+Name = Annotated[str, AfterValidator(_writable)]
+"""The name of a world."""
+
 Site = Annotated[Placement, AfterValidator(_known_type)]
 
 
 class WorldFile(Settings):
     """What a world's file may say."""
 
-    name: Annotated[str, Field(min_length=1)]
+    name: Name
     resolution: Annotated[float, Field(ge=0.1, le=50)] = 2.0
     minimum_gap: Annotated[float, Field(ge=0)] = MINIMUM_GAP
     arena: Arena = Arena()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from dataclasses import dataclass, field
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from animat.arguments import instance, real, sequence
 from animat.numerics.compiled import kernel
 from animat.settings import Settings, SettingsError, nearest
 from animat.world.arena import Arena
@@ -36,8 +36,8 @@ class LayoutError(SettingsError):
 class Placement(Settings):
     """A site: an object of a type at x, y (mm, its centroid), turned by `angle` (rad).
 
-    Raises pydantic's ValidationError for an angle of more than a million radians either way, of
-    which no sine is known.
+    Raises SettingsError for an angle of more than a million radians either way, of which no sine
+    is known.
     """
 
     type: str
@@ -65,7 +65,13 @@ class Layout:
 
     def __post_init__(self) -> None:
         """Refuse a layout that cannot be."""
-        found = [*_gap_problems(self.minimum_gap), *type_problems(self.types)]
+        for name, kind in (("placements", Placement), ("types", ObjectType), ("spares", Placement)):
+            given = sequence(name, getattr(self, name), kind, LayoutError)
+            object.__setattr__(self, name, given)
+        instance("arena", self.arena, Arena, LayoutError)
+        gap = real("minimum_gap", self.minimum_gap, 0.0, error=LayoutError)
+        object.__setattr__(self, "minimum_gap", gap)
+        found = type_problems(self.types)
         if not found:
             found = [*_unknown_types(self), *_place_problems(self)]
         if found:
@@ -123,12 +129,6 @@ def site_name(number: int, site: Placement, objects: int) -> str:
 
 def _listed(names: set[str]) -> str:
     return ", ".join(sorted(names))
-
-
-def _gap_problems(gap: float) -> list[str]:
-    if math.isfinite(gap) and gap >= 0:
-        return []
-    return [f"minimum_gap = {gap}: allowed is a finite length of at least 0 mm"]
 
 
 def _outlines(layout: Layout, numbers: range | list[int]) -> Outlines:

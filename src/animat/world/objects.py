@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-import re
 from typing import Annotated, Any, Self
 
 from numpy import float64
 from numpy.typing import NDArray
-from pydantic import Field, PlainValidator, WithJsonSchema, field_validator, model_validator
+from pydantic import (
+    Field,
+    PlainSerializer,
+    PlainValidator,
+    ValidationInfo,
+    WithJsonSchema,
+    field_validator,
+    model_validator,
+)
 
+from animat.names import MARKS, malformed, name_problems
 from animat.settings import Settings, nearest
 from animat.world.shapes import FEWEST_SIDES, MOST_SIDES, SIDES, polygon
 
@@ -55,7 +63,10 @@ class ObjectType(Settings):
 
     name: str
     shape: Annotated[
-        str | int | Corners, PlainValidator(_known_shape), WithJsonSchema(_SHAPE_SCHEMA)
+        str | int | Corners,
+        PlainValidator(_known_shape),
+        PlainSerializer(lambda shape: shape, return_type=Any),
+        WithJsonSchema(_SHAPE_SCHEMA),
     ]
     size_mm: Annotated[float, Field(gt=0)] | None = None
     features: Annotated[dict[str, float], Field(min_length=1)]
@@ -64,9 +75,18 @@ class ObjectType(Settings):
     @field_validator("name")
     @classmethod
     def _writable_name(cls, name: str) -> str:
-        if not re.fullmatch(r"\S(.*\S)?", name):
-            raise ValueError("a name is one line of at least one character, no spaces around it")
+        if problem := malformed(name):
+            raise ValueError(problem)
+        if name in MARKS:
+            raise ValueError(f"figures mark {', '.join(MARKS)}; give the type another name")
         return name
+
+    @field_validator("features", "affords")
+    @classmethod
+    def _writable_names(cls, given: dict[str, float], info: ValidationInfo) -> dict[str, float]:
+        if problems := name_problems(f"{info.field_name},", given):
+            raise ValueError("\n".join(problems))
+        return given
 
     @model_validator(mode="after")
     def _makes_a_polygon(self) -> Self:

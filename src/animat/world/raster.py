@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animat.numerics.compiled import kernel
+from animat.settings import SettingsError
 from animat.world.arena import Arena
 from animat.world.geometry import Outlines, signed_distance
 
@@ -77,17 +78,18 @@ def draw(
     `horizon` is how far (mm) from a cell's centre a site is still listed as near.
 
     Raises:
-        ValueError: a horizon that is negative or infinite, or more cells than memory should hold.
+        SettingsError: a horizon that is negative or infinite, or too many cells.
     """
     if not (math.isfinite(horizon) and horizon >= 0):
-        raise ValueError(f"horizon is {horizon} mm; allowed: a finite length of at least 0")
+        raise SettingsError(f"horizon is {horizon} mm; allowed: a finite length of at least 0")
     border = math.ceil(BORDER_MM / resolution)
     rows = math.ceil(arena.height / resolution) + 2 * border
     columns = math.ceil(arena.width / resolution) + 2 * border
     if rows * columns > MOST_CELLS:
-        raise ValueError(
-            f"resolution is {resolution:g} mm, which makes {rows} x {columns} cells of an arena "
-            f"of {arena.width:g} x {arena.height:g} mm; at most {MOST_CELLS} cells are allowed"
+        raise SettingsError(
+            f"resolution = {resolution:g} mm makes {rows:,} x {columns:,} cells of an arena of"
+            f" {arena.width:g} x {arena.height:g} mm; allowed are {MOST_CELLS:,}, so give a coarser"
+            " resolution or a smaller arena"
         )
     solid = np.empty((rows, columns), dtype=np.int16)
     clearance = np.empty((rows, columns), dtype=np.float32)

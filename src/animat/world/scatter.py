@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.arguments import MOST_64, instance, real, sequence, whole
+from animat.mistakes import brief
 from animat.numerics.compiled import compiled, kernel
 from animat.numerics.elementary import sine_cosine
 from animat.numerics.streams import LAYOUT, uniforms
@@ -42,10 +45,10 @@ def scattered(
     Raises:
         LayoutError: unknown types, impossible counts, seed or gap, or counts that do not fit.
     """
-    found = _count_problems(counts, types)
-    found += _seed_and_gap_problems(seed, gap)
-    if found:
-        raise LayoutError(*found)
+    seed, gap = _seed_and_gap(seed, gap)
+    instance("arena", arena, Arena, LayoutError)
+    types = sequence("types", types, ObjectType, LayoutError)
+    counts = _checked_counts(counts, types)
     empty = Layout(placements=(), types=types, arena=arena, minimum_gap=gap)
     of_each = {kind: counts[kind.name] for kind in types if counts.get(kind.name)}
     _refuse_too_many(arena, of_each, gap, "objects")
@@ -60,11 +63,8 @@ def with_spares(layout: Layout, per_type: int, seed: int, gap: float) -> Layout:
     Raises:
         LayoutError: an impossible number, seed or gap, or spares that do not fit.
     """
-    found = _seed_and_gap_problems(seed, gap)
-    if isinstance(per_type, bool) or not isinstance(per_type, int) or per_type < 0:
-        found.append(f"spares = {per_type!r}: allowed is a whole number of at least 0")
-    if found:
-        raise LayoutError(*found)
+    seed, gap = _seed_and_gap(seed, gap)
+    per_type = whole("spares", per_type, error=LayoutError)
     occurring = {site.type for site in layout.placements}
     of_each = {kind: per_type for kind in layout.types if kind.name in occurring}
     _refuse_too_many(layout.arena, of_each, gap, "spare sites")
@@ -79,24 +79,27 @@ def with_spares(layout: Layout, per_type: int, seed: int, gap: float) -> Layout:
     )
 
 
-def _count_problems(counts: Mapping[str, int], types: tuple[ObjectType, ...]) -> list[str]:
+def _checked_counts(counts: Any, types: tuple[ObjectType, ...]) -> dict[str, int]:
     names = [kind.name for kind in types]
-    found = []
-    for name, count in counts.items():
+    found: list[str] = []
+    checked: dict[str, int] = {}
+    for name, count in instance("counts", counts, Mapping, LayoutError).items():
         if name not in names:
-            found.append(f"counts: unknown type {name}{nearest(str(name), names)}")
-        if isinstance(count, bool) or not isinstance(count, int) or count < 0:
-            found.append(f"counts: {name} = {count!r}: allowed is a whole number of at least 0")
-    return found
+            found.append(f"counts: unknown type {brief(name)}{nearest(str(name), names)}")
+        try:
+            checked[name] = whole(f"counts: {brief(name)}", count, error=LayoutError)
+        except LayoutError as error:
+            found += error.problems
+    if found:
+        raise LayoutError(*found)
+    return checked
 
 
-def _seed_and_gap_problems(seed: int, gap: float) -> list[str]:
-    found = []
-    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**64:
-        found.append(f"seed = {seed!r}: allowed is a whole number from 0 to 2**64 - 1")
-    if not (math.isfinite(gap) and gap >= 0):
-        found.append(f"gap = {gap!r}: allowed is a finite length of at least 0 mm")
-    return found
+def _seed_and_gap(seed: Any, gap: Any) -> tuple[int, float]:
+    return (
+        whole("seed", seed, 0, MOST_64, LayoutError),
+        real("gap", gap, 0.0, error=LayoutError),
+    )
 
 
 def _refuse_too_many(

@@ -11,10 +11,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from animat import arguments
+from animat.arguments import instance, real, whole
+from animat.mistakes import brief
+from animat.names import malformed
 from animat.settings import SettingsError
 from animat.world.arena import Arena
 from animat.world.files import read_world, write_world
-from animat.world.layout import MINIMUM_GAP, Layout
+from animat.world.layout import MINIMUM_GAP, Layout, LayoutError
 from animat.world.objects import TABLE_1, ObjectType
 from animat.world.raster import Raster, draw
 from animat.world.scatter import scattered, with_spares
@@ -38,12 +42,13 @@ class World:
     resolution: float = RESOLUTION
 
     def __post_init__(self) -> None:
-        """Refuse a resolution that makes no raster."""
-        if not FINEST <= self.resolution <= COARSEST:
-            raise SettingsError(
-                f"resolution = {self.resolution!r}: allowed is a length from "
-                f"{FINEST:g} to {COARSEST:g} mm"
-            )
+        """Refuse what is no world. Raises SettingsError."""
+        instance("layout", self.layout, Layout)
+        if problem := malformed(instance("name", self.name, str)):
+            raise SettingsError(f"name = {brief(self.name)}: {problem}")
+        object.__setattr__(self, "name", str.__str__(self.name))
+        resolution = real("resolution", self.resolution, FINEST, COARSEST)
+        object.__setattr__(self, "resolution", resolution)
 
     @classmethod
     def abundant(cls) -> World:
@@ -75,7 +80,8 @@ class World:
         Raises:
             LayoutError: unknown types, impossible values, or counts that do not fit.
         """
-        layout = scattered(counts, seed, gap, arena or Arena(), types)
+        spares = whole("spares", spares, error=LayoutError)
+        layout = scattered(counts, seed, gap, Arena() if arena is None else arena, types)
         if name is None:
             told = " ".join(f"{count} {kind}" for kind, count in counts.items() if count)
             name = f"random {told or 'empty'}, seed {seed}"
@@ -89,12 +95,16 @@ class World:
         Raises:
             SettingsError: with a line for everything that is wrong with the file.
         """
-        name, layout, resolution = read_world(Path(path))
+        name, layout, resolution = read_world(arguments.path("path", path))
         return cls(layout=layout, name=name, resolution=resolution)
 
     def save(self, path: str | Path) -> None:
-        """Write the world as a TOML file that `load` reads back as the same world."""
-        write_world(Path(path), self.name, self.layout, self.resolution)
+        """Write the world as a TOML file that `load` reads back as the same world.
+
+        Raises:
+            SettingsError: the file cannot be written.
+        """
+        write_world(arguments.path("path", path), self.name, self.layout, self.resolution)
 
     def with_spares(self, n_per_type: int, seed: int = 0, gap: float | None = None) -> World:
         """Return the world with `n_per_type` more spare sites of every type that occurs in it.
@@ -148,9 +158,9 @@ class World:
         Drawn once for a content, a horizon and a resolution, then kept and shared: read only.
 
         Raises:
-            ValueError: an impossible horizon, or too many cells.
+            SettingsError: an impossible horizon, or too many cells.
         """
-        return _raster(self, float(horizon))
+        return _raster(self, real("horizon", horizon, 0.0))
 
     @classmethod
     @cache

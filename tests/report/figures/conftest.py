@@ -1,3 +1,5 @@
+from functools import cache
+
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -11,6 +13,7 @@ NEEDS = (
 )
 
 
+@cache
 def make_trace(steps=4000, seed=1, start=0):
     """A trace as a life would leave one: a walk, needs that move, encounters with objects."""
     rng = np.random.default_rng(seed)
@@ -82,6 +85,7 @@ def make_trace(steps=4000, seed=1, start=0):
     )
 
 
+@cache
 def make_learning(seeds=40, episodes=150):
     rng = np.random.default_rng(2)
     afforded = {
@@ -106,6 +110,7 @@ def make_learning(seeds=40, episodes=150):
     return pa.table(columns), afforded
 
 
+@cache
 def make_ratios(layouts=20):
     rng = np.random.default_rng(3)
     rows = []

@@ -14,11 +14,13 @@ from animat.report import survival
 from animat.report.estimates import Estimate, share
 from animat.report.figures import style
 from animat.report.figures.causes import causes_figure
+from animat.report.figures.interaction import InteractionLine, interaction_figure
 from animat.report.figures.learning import learning_figure
 from animat.report.figures.learning_curve import learning_curve_figure
 from animat.report.figures.life import life_figure
 from animat.report.figures.lifespans import Bar, Panel, lifespans_figure
 from animat.report.figures.margins import margins_figure
+from animat.report.figures.networks import SURFACE, networks_figure
 from animat.report.figures.ratio import Mark, ratio_figure
 from animat.report.figures.survival import level_curves_figure, survival_figure
 from animat.report.figures.trend import trend_figure
@@ -26,7 +28,9 @@ from animat.report.figures.worlds import worlds_figure
 from animat.report.survival import ALIVE, DeathCount
 
 SET_POINTS = {"nutrition": 0.9, "stamina": 0.2, "restlessness": 0.1}
-DRIVES = ("hunger", "fatigue", "curiosity")
+DRIVES = {"hunger": "nutrition", "fatigue": "stamina", "curiosity": "restlessness"}
+BEHAVIOURS = {"eat": "nutrition", "shelter": "stamina", "interact": "restlessness"}
+MIND = {"set_points": SET_POINTS, "drives": DRIVES, "behaviours": BEHAVIOURS}
 CELLS = [(world, agent) for world in ("abundant", "scarce") for agent in ("BLIND", "AF")]
 
 
@@ -65,6 +69,23 @@ def drawings(trace, learning, ratios, world, robot, lives_table):
             },
             250.0,
         ),
+        "interaction": lambda: interaction_figure(
+            "mind.failure_effect",
+            ("0", "0.001", "1", "not set"),
+            (0.0, 0.001, 1.0, np.nan),
+            [
+                InteractionLine(f"{bar.agent}, {k}", dict.fromkeys(range(4), bar.mean))
+                for k, bar in enumerate(bars)
+            ],
+            "agent",
+        ),
+        "interaction_words": lambda: interaction_figure(
+            "world.layout",
+            ["a level with a name that is much longer than a page is wide"] * 5,
+            None,
+            [InteractionLine("BLIND", {k: bar.mean for k, bar in enumerate(bars)})],
+            "agent",
+        ),
         "trend": lambda: trend_figure(
             "mind.success_effect",
             rng.random(50),
@@ -72,18 +93,30 @@ def drawings(trace, learning, ratios, world, robot, lives_table):
             [(0.2, bars[0].mean), (0.7, bars[1].mean)],
         ),
         "causes": lambda: causes_figure({", ".join(cell): deaths for cell in CELLS}),
-        "life": lambda: life_figure(
-            trace(300), set_points=SET_POINTS, drives=DRIVES, world=worlds[0], title="A life"
-        ),
-        "life_alone": lambda: life_figure(trace(300), set_points=SET_POINTS, drives=DRIVES),
+        "life": lambda: life_figure(trace(300), **MIND, world=worlds[0], title="A life"),
+        "life_alone": lambda: life_figure(trace(300), **MIND),
         "ratio": lambda: ratio_figure(ratios(5), marks=[Mark("World 1", 8, 2.0)]),
+        "networks": lambda: networks_figure(
+            ("eat", "shelter", "interact"),
+            ("shape", "size"),
+            [(rng.normal(size=(2, 3)), rng.normal(size=3)) for _ in range(3)],
+            rng.random((3, len(SURFACE), len(SURFACE))),
+            {"TS": (np.zeros(2), [0.1, 0.5, 1.0]), "CL": (np.ones(2), [0.1, 0.5, 1.0])},
+        ),
+        "networks_of_many": lambda: networks_figure(
+            ("eat", "shelter"),
+            ("shape", "size", "colour"),
+            [(rng.normal(size=(4, 4)), rng.normal(size=5)) for _ in range(2)],
+            None,
+            {name: (np.zeros(3), [0.1, 0.5]) for name in ("TS", "TL", "CS", "CL")},
+        ),
     }
 
 
 NAMES = (
     "worlds", "learning", "lifespans", "learning_curve", "survival", "survival_log",
-    "survival_levels", "margins", "trend", "causes",
-    "life", "life_alone", "ratio",
+    "survival_levels", "margins", "interaction", "interaction_words", "trend", "causes",
+    "life", "life_alone", "ratio", "networks", "networks_of_many",
 )  # fmt: skip
 
 
@@ -144,8 +177,8 @@ def hidden_ticks(fig):
 
 def test_no_figure_needs_pyplot():
     modules = (
-        "causes learning learning_curve life lifespans marginal margins ratio sobol specification"
-        " style survival trend verdicts worlds"
+        "causes columns learning learning_curve life lifespans marginal margins ratio sobol"
+        " specification style survival trend verdicts worlds"
     )
     code = "; ".join(f"import animat.report.figures.{name}" for name in modules.split())
     code += "; import sys; sys.exit('matplotlib.pyplot' in sys.modules)"
@@ -163,12 +196,12 @@ def test_the_users_own_settings_neither_show_nor_change(drawings, monkeypatch):
 
 def test_a_life_of_one_step_can_be_drawn(trace):
     row = trace(50).slice(0, 1)
-    style.png(life_figure(row, set_points=SET_POINTS, drives=DRIVES), dpi=50)
+    style.png(life_figure(row, **MIND), dpi=50)
 
 
 def test_a_long_life_does_not_make_a_heavy_picture(trace, world):
-    long = trace(30_000)
-    fig = life_figure(long, set_points=SET_POINTS, drives=DRIVES, world=world("World", 5))
+    long = trace(100_000)
+    fig = life_figure(long, **MIND, world=world("World", 5))
     assert len(style.svg(fig)) < 2_000_000
 
 

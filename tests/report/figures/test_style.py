@@ -1,4 +1,6 @@
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from animat.report.figures import style
 from animat.settings import SettingsError
@@ -16,14 +18,25 @@ def test_what_is_known_keeps_its_colour_whoever_else_is_there():
 
 
 def test_nobody_shares_a_colour_while_there_are_enough():
-    for given in (style.agent_colours(["BLIND", "AF", "LEARNING", "ORACLE", "RANDOM"]),
+    for each in (style.agent_colours(["BLIND", "AF", "LEARNING", "ORACLE", "RANDOM"]),
                   style.type_colours(["TS", "cube", "TL", "CS", "CL", "star"])):  # fmt: skip
-        assert len(set(given.values())) == len(given)
+        assert len(set(each.values())) == len(each)
 
 
-def test_more_types_than_colours_are_still_drawn():
-    given = style.type_colours([f"type {k}" for k in range(30)])
-    assert len(given) == 30
+def test_a_hundred_types_have_a_hundred_colours_none_of_which_marks_anything_else():
+    colours = set(style.type_colours([f"type {k}" for k in range(100)]).values())
+    assert len(colours) == 100
+    assert not {style.BLACK, style.GREEN, "#FFFFFF"} & colours
+
+
+@given(st.permutations(["stamina", "thirst", "nutrition", "fear", "restlessness", "age", "heat"]))
+def test_a_need_has_its_colour_in_whatever_order_they_are_listed(variables):
+    colours = style.need_colours(variables)
+    assert colours == style.need_colours(sorted(variables))
+    assert len(set(colours.values())) == len(variables)
+    assert set(style.need_colours(["nutrition", "stamina", "restlessness"]).values()) <= set(
+        style.PALETTE
+    )
 
 
 def test_types_come_in_the_order_of_table_1():
@@ -54,7 +67,5 @@ def test_a_logarithmic_axis_is_for_positive_numbers_far_apart():
     assert not style.spread_out([])
 
 
-def test_long_labels_are_cut_and_take_fewer_columns():
-    assert style.shortened("x" * 44) == "x" * 44
-    assert style.shortened("x" * 45) == "x" * 43 + "…"
+def test_long_labels_take_fewer_columns():
     assert [style.legend_columns(["x" * n]) for n in (5, 30, 44)] == [3, 2, 1]

@@ -1,7 +1,7 @@
 import numpy as np
 import pyarrow as pa
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -59,7 +59,6 @@ def test_a_value_is_compared_only_where_the_first_was_possible(planted, readings
     assert rows["physiology", "linear"]["universes_against"] == total / 3
 
 
-@settings(deadline=None)
 @given(st.integers(0, 40), st.integers(0, 40))
 def test_a_difference_of_shares_lies_in_its_interval_and_so_does_its_contrary(a, b):
     one, other = (np.repeat([1.0, 0.0], [k, 40 - k]) for k in (a, b))

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
@@ -73,7 +73,6 @@ def test_one_is_one_but_not_true():
         each_once([True, 1, True])
 
 
-@settings(deadline=None)
 @given(
     ends=st.tuples(st.floats(1e-6, 1e6), st.floats(1e-6, 1e6)).filter(lambda e: e[0] < e[1]),
     scale=st.sampled_from(["linear", "log"]),
@@ -91,7 +90,6 @@ def test_the_middle_is_that_of_the_numbers_or_of_their_logarithms():
     assert Range(low=1.0, high=100.0, scale="log").at(0.5, False) == pytest.approx(10.0)
 
 
-@settings(deadline=None)
 @given(low=st.integers(-50, 50), width=st.integers(1, 20), share=SHARES)
 def test_a_whole_range_gives_whole_numbers_both_ends_among_them(low, width, share):
     value = Range(low=low, high=low + width).at(share, True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.mind.mind import Mind
@@ -19,7 +19,6 @@ LETTERS = st.characters(exclude_categories=["C", "Z"], exclude_characters="\"'\\
 PARTS = st.text(LETTERS | st.just(" "), min_size=1)
 
 
-@settings(deadline=None)
 @given(st.lists(PARTS, min_size=1, max_size=4).map(tuple))
 def test_a_key_is_read_as_it_is_written(key):
     assert read_key(written(key)) == key

@@ -204,7 +204,7 @@ FREE = {
     "worlds", "mind.variables", "mind.drives", "mind.behaviours", "world.counts", "design.grid",
     "design.sample.over", "teacher.world.counts",
 }  # fmt: skip
-"""Tables with names of the user's own: what is written takes the place of all of the default."""
+"""Tables with names of the user's own: what is written under a name is all there is of it."""
 
 TEACHER = {"robots": 100, "steps": 300_000, "world": {}}
 SAMPLE = {"seed": 0}
@@ -219,9 +219,11 @@ def meaning(data: dict[str, Any]) -> dict[str, Any]:
     """What an accepted file says, every default in it, as `Study.to_toml` is to write it."""
     said = _overlaid(DEFAULTS, data, "")
     said["worlds"] = {name: WORLD | world for name, world in data.get("worlds", {}).items()}
-    if "drives" in data.get("mind", {}):
-        said["mind"]["drives"] = {
-            name: DRIVE | drive for name, drive in data["mind"]["drives"].items()
+    for name, default in {"drives": DRIVE, "behaviours": {}}.items():
+        parts = data.get("mind", {}).get(name, {})
+        said["mind"][name] = DEFAULTS["mind"][name] | {
+            part: default | given if isinstance(given, dict) else given
+            for part, given in parts.items()
         }
     if "teacher" in data:
         said["teacher"] = TEACHER | data["teacher"]
@@ -288,7 +290,7 @@ def refused(file: Path) -> list[str]:
     return [line.removeprefix(f"{file}: ") for line in lines]
 
 
-@settings(max_examples=400, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=4 * settings().max_examples, suppress_health_check=list(HealthCheck))
 @given(mutation=mutations())
 def test_a_changed_study_is_refused_or_means_what_it_says(file, mutation):
     _, data = mutation

@@ -1,7 +1,6 @@
 """Settings files of studies, and the worlds they choose."""
 
 import pytest
-from pydantic import ValidationError
 
 from animat.settings import SettingsError, read_toml
 from animat.study.design.settings import LifeSettings, WorldChoice, named
@@ -50,7 +49,7 @@ def test_a_published_world_may_have_spares_and_another_resolution():
     "choice", [{"layout": "random"}, {"counts": {"TS": 1}}, {"layout": "scarce", "counts": {}}]
 )
 def test_counts_go_with_random_worlds_only(choice):
-    with pytest.raises(ValidationError, match="go together"):
+    with pytest.raises(SettingsError, match="go together"):
         WorldChoice(**choice)
 
 

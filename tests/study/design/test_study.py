@@ -8,7 +8,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import animat.study
@@ -236,7 +236,6 @@ def test_a_settings_file_is_not_taken_for_a_study_nor_a_study_for_settings(file)
         read_toml(file, LifeSettings)
 
 
-@settings(max_examples=30, deadline=None)
 @given(
     seed=st.integers(0, 2**63 - 1),
     rate=st.floats(1e-300, 1e300),

@@ -130,7 +130,7 @@ def test_a_function_that_nobody_can_name_is_refused():
         return (speed, speed) if unknown else (0, 0)
 
     functions = lived().functions._replace(wander=walk)
-    with pytest.raises(LifeError, match="walk takes more from the function around it"):
+    with pytest.raises(LifeError, match="walk depends on unknown, which is of type object"):
         identity(lived()._replace(functions=functions))
 
 

@@ -145,17 +145,11 @@ def test_lives_of_a_robot_that_failed_fail_and_no_others(small, taught):
             assert row == plain
 
 
-def test_a_life_that_failed_has_its_name_and_its_error_and_no_trace(faults, tmp_path):
+def test_a_life_that_failed_has_its_name_and_its_error_and_no_trace(faults, tmp_path, lost):
     own = tmp_path / "own.py"
-    own.write_text(
-        "def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):\n"
-        "    memory[0] += 1.0\n"
-        "    if memory[0] > 30.0 and luck_a < 0.02:\n"
-        '        raise ValueError("lost")\n'
-        "    return speed, speed\n"
-    )
+    own.write_text(lost)
     plan = faults.plan(
-        f'name = "failing"\nlives = 8\nsteps = 60\n[mind]\nwander = "{own}:walk"\n'
+        f'name = "failing"\nlives = 8\nsteps = 300\n[mind]\nwander = "{own}:walk"\n'
         '[record]\nwhat = "all"\nlives = 8\n'
     )
     made = live_part(plan.text, Part("lives", 0), {})
@@ -182,6 +176,8 @@ def test_minds_and_worlds_of_several_kinds_have_the_same_columns(faults, tmp_pat
         'name = "kinds"\nlives = 4\nsteps = 20\nmeasures = ["likelihoods"]\n'
         '[mind]\nagent = "LEARNING"\n[mind.behaviours]\n'
         'feed = { serves = "hunger", needs = "grasp" }\n'
+        'shelter = { serves = "fatigue", needs = "shelter" }\n'
+        'interact = { serves = "curiosity", needs = "interact" }\n'
         f'[design.grid]\n"world.layout" = ["abundant", "{tmp_path}/other.toml"]\n'
     )
     made = live_part(plan.text, Part("lives", 0), {})

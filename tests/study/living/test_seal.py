@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from animat.study.living.seal import Seal, content, content_of, seal_of, sealed
@@ -102,7 +102,6 @@ def test_two_columns_have_one_hash_if_and_only_if_they_are_equal(one, other):
     assert (content(tables[0]) == content(tables[1])) == (one == other)
 
 
-@settings(max_examples=60)
 @given(st.data())
 def test_a_torn_file_has_no_seal(tmp_path_factory, data):
     path = tmp_path_factory.mktemp("torn") / "a.parquet"

@@ -78,6 +78,7 @@ def test_layouts_differ_from_universe_to_universe_and_the_published_ones_do_not(
         ({"teacher": None}, r"needs a \[teacher\]"),
         ({"paired": False}, "paired = true"),
         ({"design": {"sample": None}}, "has no reading"),
+        ({"design": {"sample": {"points": 4, "over": {"steps": [9, 10]}}}}, "steps is no reading"),
     ],
 )
 def test_a_study_that_is_none_is_refused(small, change, message):

@@ -57,8 +57,9 @@ def page(results):
 def test_the_page_has_all_its_parts(page):
     assert page.headings == [
         "Study: four", "What was asked", "How it was run", "All lives", "The cases", "The factors",
-        "world.layout", "mind.agent", "What the networks learnt", "Methods and citation",
-        "The readings taken", "The study file",
+        "world.layout", "mind.agent", "Interactions of two factors", "world.layout by mind.agent",
+        "What the networks learnt", "Methods and citation", "The readings taken",
+        "The study file",
     ]  # fmt: skip
 
 

@@ -2,12 +2,14 @@
 
 from collections import Counter
 
+import pyarrow as pa
 import pytest
 
+from animat.files import RunError
 from animat.life.life import live
 from animat.life.lives import live_many
 from animat.life.setting import LifeError
-from animat.mind.mind import Behaviour, Drive, Mind
+from animat.mind.mind import Mind
 from animat.report.survival import summarise
 from animat.robot.khepera import Khepera
 from animat.settings import SettingsError
@@ -193,24 +195,26 @@ def test_what_was_broken_off_with_other_settings_is_kept_unless_it_is_begun_anew
     assert set(result.lives["seed"].to_pylist()) == {2}
 
 
-def test_lives_that_fail_are_left_out_and_counted(tmp_path):
+def test_lives_that_fail_are_left_out_and_counted(tmp_path, lost, monkeypatch):
     own = tmp_path / "own.py"
-    own.write_text(FAILING)
+    own.write_text(lost)
     settings = LifeSettings(mind=Mind(wander=f"{own}:walk"))
-    size = Size(robots=3, lives=20, steps=600)
+    size = Size(robots=3, lives=20, steps=200)
     result = reproduce(settings, seed=1, size=size, directory=tmp_path / "out", tell=silent)
     robots = set(result.learnt.final["seed"].to_pylist())
     assert result.failed > 0
     assert result.failed == 3 - len(robots) + 80 - result.lives.num_rows
     assert result.lives["lifespan"].null_count == 0
 
+    def all_failed(self, columns=None, where=None):
+        return pa.table({"case": [0, 1], "error": [None, "lost"]}, pa.schema(COLUMNS))
 
-FAILING = """
-def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
-    if luck_a < 0.0005:
-        raise ValueError("lost")
-    return speed, speed
-"""
+    monkeypatch.setattr(reproduction.Results, "lives", all_failed)
+    with pytest.raises(RunError, match="all lives of a case failed, such as case"):
+        reproduce(settings, seed=1, size=size, directory=tmp_path / "out", tell=silent)
+
+
+COLUMNS = [("case", pa.int64()), ("error", pa.string())]
 
 
 def test_both_experiments_are_the_studies_that_come_with_animat():
@@ -228,8 +232,8 @@ def test_both_experiments_are_the_studies_that_come_with_animat():
 
 
 ONE_DRIVE = Mind(
-    drives={"hunger": Drive(a={"nutrition": 1.0})},
-    behaviours={"eat": Behaviour(serves="hunger", needs="grasp")},
+    drives={"fatigue": None, "curiosity": None},
+    behaviours={"shelter": None, "interact": None},
 )
 
 

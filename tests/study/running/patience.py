@@ -1,4 +1,12 @@
-"""How long tests wait for other processes."""
+"""How long tests wait where a number of seconds has to be given."""
 
-LONGEST = 90.0
-"""Seconds to wait for what comes sooner or later, also where all cores are busy."""
+LONGEST = 600.0
+"""Seconds; a test that hangs for longer is ended by pytest's `faulthandler_timeout`."""
+
+PATIENT = f"""
+from animat.cli import main
+from animat.study.running import cluster
+cluster.CONNECTING = {LONGEST}
+main()
+"""
+"""The command line, on a machine where a scheduler may be slow to answer."""

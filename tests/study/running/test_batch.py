@@ -19,15 +19,16 @@ from distributed.security import Security
 
 import animat
 from animat.settings import SettingsError
+from animat.study.running import cluster as module
 from animat.study.running import remote
 from animat.study.running.batch import batch
 from animat.study.running.cluster import BATCH_SYSTEMS, cluster
 from animat.study.running.run import run
 from animat.study.running.worker import ClusterError
 
-from .patience import LONGEST
+from .patience import LONGEST, PATIENT
 
-pytestmark = pytest.mark.usefixtures("bounded")
+pytestmark = pytest.mark.long
 
 SBATCH = """#!/bin/sh
 cp "$1" job.sh
@@ -82,6 +83,7 @@ def slurm(jobqueue, tmp_path, monkeypatch) -> Iterator[Path]:
     """A folder in which Slurm is there and configured."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(remote, "LOOK_EVERY", 0.1)
+    monkeypatch.setattr(module, "CONNECTING", LONGEST)
     monkeypatch.setattr(dask.config, "PATH", str(tmp_path / "dask"))
     (tmp_path / "bin").mkdir()
     command(tmp_path / "bin" / "sbatch", SBATCH)
@@ -104,7 +106,7 @@ def test_a_study_is_lived_by_jobs(slurm, faults, finished):
     (slurm / "dask" / "jobqueue.yaml").write_text(json.dumps({"jobqueue": {"slurm": JOBS}}))
     (slurm / "small.toml").write_text(faults.SMALL)
     ran = subprocess.run(
-        [sys.executable, "-m", "animat", *shlex.split("run small.toml --cluster slurm --jobs 2")],
+        [sys.executable, "-c", PATIENT, *shlex.split("run small.toml --cluster slurm --jobs 2")],
         env={
             **os.environ,
             "DASK_CONFIG": str(slurm / "dask"),
@@ -112,7 +114,6 @@ def test_a_study_is_lived_by_jobs(slurm, faults, finished):
         },
         capture_output=True,
         text=True,
-        timeout=LONGEST,
         check=False,
     )
     assert ran.returncode == 0, ran.stderr

@@ -28,27 +28,29 @@ from animat.cli import main
 from animat.settings import SettingsError
 from animat.study.living.plan import forget
 from animat.study.running import cluster as module
-from animat.study.running import remote
+from animat.study.running import remote, roster
+from animat.study.running import run as running
 from animat.study.running.cluster import cluster
+from animat.study.running.interruption import interruptible
 from animat.study.running.run import run, threads
 from animat.study.running.worker import ClusterError, begun
 
-from .patience import LONGEST
+from .patience import LONGEST, PATIENT
 
-pytestmark = pytest.mark.usefixtures("bounded")
+pytestmark = pytest.mark.long
 
 SOURCE = Path(animat.__file__).parents[1]
 
 IMMORTAL = """
 name = "immortal"
-lives = 80
+lives = 400
 steps = 100_000
 [mind.variables]
 nutrition = { lethal = false }
 stamina = { lethal = false }
 restlessness = { lethal = false }
 """
-"""Ten parts that take a moment each."""
+"""Dozens of parts that take a moment each."""
 
 ENDLESS = IMMORTAL.replace("100_000", "1_000_000_000")
 
@@ -59,18 +61,19 @@ def silent(*_, **__):
 
 def until(there: Callable[[], Any]) -> Any:
     """Wait for something, and return it."""
-    end = time.monotonic() + LONGEST
-    while time.monotonic() < end:
-        if found := there():
-            return found
+    while not (found := there()):
         time.sleep(0.05)
-    raise AssertionError("it does not come")
+    return found
 
 
 @pytest.fixture(autouse=True)
-def often(monkeypatch) -> None:
-    """Look who is there more often than users need."""
+def patient(monkeypatch) -> None:
+    """Look who is there more often than users need, and wait longer for an answer."""
     monkeypatch.setattr(remote, "LOOK_EVERY", 0.1)
+    monkeypatch.setattr(remote, "BRIEFLY", LONGEST)
+    monkeypatch.setattr(module, "CONNECTING", LONGEST)
+    monkeypatch.setattr(roster, "AT_FIRST", LONGEST)
+    monkeypatch.setattr(roster, "PATIENCE", LONGEST)
 
 
 class Machines:
@@ -116,7 +119,7 @@ class Machines:
         for process in processes or self.processes:
             process.kill()
         for process in processes or self.processes:
-            process.wait(LONGEST)
+            process.wait()
 
 
 @pytest.fixture(scope="module")
@@ -200,12 +203,11 @@ class TestSameBytes:
         file = secure.folder / "small.toml"
         file.write_text(faults.SMALL)
         ran = subprocess.run(
-            [sys.executable, "-m", "animat", "run", "small.toml", "--cluster", secure.address],
+            [sys.executable, "-c", PATIENT, "run", "small.toml", "--cluster", secure.address],
             cwd=secure.folder,
             env=secure.environment,
             capture_output=True,
             text=True,
-            timeout=LONGEST,
             check=False,
         )
         assert ran.returncode == 0, ran.stderr
@@ -301,26 +303,33 @@ class TestRefused:
 
 class TestTheEnd:
     @pytest.fixture
-    def interrupting(self, secure) -> Iterator[Callable[[int], list[str]]]:
+    def interrupting(self, secure, monkeypatch) -> Iterator[Callable[[int], list[str]]]:
         """Press Ctrl-C so many times once the workers are at something; tell at what they were."""
         keys: list[str] = []
-        helpers = []
+        helpers, asked = [], []
+
+        @contextmanager
+        def watched(stop):
+            with interruptible(stop) as event:
+                asked.append(event)
+                yield event
 
         def press(times: int) -> list[str]:
             def wait() -> None:
                 keys.extend(until(lambda: at_work(client)))
                 for _ in range(times):
                     os.kill(os.getpid(), signal.SIGINT)
-                    time.sleep(0.5)
+                    asked[0].wait()
 
             helpers.append(threading.Thread(target=wait))
             helpers[-1].start()
             return keys
 
+        monkeypatch.setattr(running, "interruptible", watched)
         with watching(secure.address) as client:
             yield press
             for helper in helpers:
-                helper.join(LONGEST)
+                helper.join()
             until(lambda: not at_work(client))
 
     def test_the_first_interruption_finishes_what_workers_are_at(
@@ -407,14 +416,15 @@ class TestTheEnd:
             helper.start()
             with pytest.raises(ClusterError, match="1 workers died one after another"):
                 lived_on(plain, faults.plan(ENDLESS), tmp_path)
-            helper.join(LONGEST)
+            helper.join()
             client.run_on_scheduler(allow, failures=before)
         machines.end(worker)
 
 
 class TestNotThere:
     @pytest.fixture(autouse=True)
-    def soon(self, monkeypatch):
+    def soon(self, patient, monkeypatch):
+        """Give up soon on those who never answer."""
         monkeypatch.setattr(module, "CONNECTING", 1.0)
 
     @pytest.fixture
@@ -444,7 +454,6 @@ class TestNotThere:
             def serve() -> None:
                 connection, _ = server.accept()
                 connection.sendall(answer)
-                connection.settimeout(LONGEST)
                 while connection.recv(4096):
                     pass
                 connection.close()
@@ -452,9 +461,10 @@ class TestNotThere:
             thread = threading.Thread(target=serve)
             thread.start()
             assert "Dask scheduler" in fails(f"tcp://127.0.0.1:{server.getsockname()[1]}")
-            thread.join(LONGEST)
+            thread.join()
 
-    def test_a_worker(self, fails, secure):
+    def test_a_worker(self, fails, secure, monkeypatch):
+        monkeypatch.setattr(module, "CONNECTING", LONGEST)
         with watching(secure.address) as client:
             address = min(until(client.nthreads))
         assert fails(address) == f"{address}: what answers there is no Dask scheduler but a Worker"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
@@ -69,30 +70,52 @@ def test_another_engine_is_refused(small, copied, monkeypatch):
     assert line == f"was lived by engine {read_manifest(copied)['engine']}, and this is engine 999"
 
 
-WALK = """
-def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
-    return speed, speed - {number}
-"""
-
-
-def test_a_file_that_has_changed_is_refused_and_its_copy_kept(faults, tmp_path):
+def test_a_file_that_has_changed_is_refused_and_its_copy_kept(faults, tmp_path, lost):
     own = tmp_path / "own.py"
-    own.write_text(WALK.format(number=1))
+    own.write_text(lost)
     text = f'name = "own"\nlives = 1\nsteps = 5\n[mind]\nwander = "{own}:walk"\n'
     directory = tmp_path / "results"
     faults.go_on(faults.plan(text), directory)
-    own.write_text(WALK.format(number=2))
+    own.write_text(lost.replace("speed, speed", "speed, speed - 2"))
     (line,) = differences_from(directory, faults.plan(text + "# read again\n"))
     assert line == f"{own} has changed since; as it was it is in {directory / 'inputs'}"
     assert verify(Results(directory), telling).problems == [line]
-    (copy,) = (directory / "inputs").iterdir()
-    assert copy.read_text() == WALK.format(number=1)
+    copy = directory / "inputs" / "outside" / own.relative_to("/")
+    assert copy.read_text() == lost
     own.unlink()
     gone = f"{own} is not there any more; as it was it is in {directory / 'inputs'}"
     assert differences_from(directory, faults.plan(text)) == [gone]
     assert verify(Results(directory), telling).problems == [gone]
     shutil.copy(copy, own)
     assert differences_from(directory, faults.plan(text)) == []
+
+
+def test_a_study_can_be_run_again_where_the_copies_are(faults, tmp_path, monkeypatch):
+    """With all that its functions import, and with another neighbour of the same name elsewhere."""
+    text = 'name = "own"\nlives = 1\nsteps = 5\n[design.grid]\n"mind.wander" = ["{a}", "{b}"]\n'
+    text = text.format(a="a/own.py:walk", b=f"{tmp_path}/b/own.py:walk")
+    own = "from pkg import helper\nimport util\n" + WALK.format(number="util.K * helper.K")
+    for folder, number in (("a", 1), ("b", 2)):
+        (tmp_path / folder / "pkg").mkdir(parents=True)
+        (tmp_path / folder / "own.py").write_text(own)
+        (tmp_path / folder / "util.py").write_text(f"K = {number}\n")
+        (tmp_path / folder / "pkg" / "helper.py").write_text(f"K = {number}\n")
+    monkeypatch.chdir(tmp_path)
+    plan = faults.plan(text)
+    assert len(set(plan.identities)) == 2
+    description.begin(tmp_path, plan)
+    inputs = tmp_path / "inputs"
+    names = ["own.py", "pkg/helper.py", "util.py"]
+    outside = Path("outside", *tmp_path.parts[1:])
+    there = {str(path.relative_to(inputs)) for path in inputs.rglob("*.py")}
+    assert there == {*(f"a/{name}" for name in names), *(f"{outside}/b/{name}" for name in names)}
+    (tmp_path / "a" / "util.py").write_text("K = 3\n")
+    assert differences_from(tmp_path, plan) == [
+        f"a/util.py has changed since; as it was it is in {inputs}"
+    ]
+    monkeypatch.chdir(inputs)
+    again = text.replace(f"{tmp_path}/b", f"{outside}/b")
+    assert faults.plan(again).identities == plan.identities
 
 
 def test_lives_that_became_others_for_reasons_unknown_are_refused(small, copied):

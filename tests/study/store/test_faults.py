@@ -17,18 +17,33 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import settings
 
 from animat.study import provenance
 from animat.study.store import lock, log
 from animat.study.store.status import status
 
+pytestmark = pytest.mark.long
+
 KILLED = -9
 
+NIGHTLY = settings.get_current_profile_name() == "nightly"
+STEP = 1 if NIGHTLY else 5
+"""One in so many writes is tried."""
 
-def driven(how: str, folder: Path) -> dict[str, Any]:
+KILLS = 200 if NIGHTLY else 30
+
+
+def driven(how: str, folder: Path, number: int = 0) -> dict[str, Any]:
     """What a driver tells that breaks off runs in one way."""
     done = subprocess.run(
-        [sys.executable, str(Path(__file__).parents[1] / "faults.py"), how, str(folder)],
+        [
+            sys.executable,
+            str(Path(__file__).parents[1] / "faults.py"),
+            how,
+            str(folder),
+            str(number),
+        ],
         check=False,
         capture_output=True,
         text=True,
@@ -39,24 +54,25 @@ def driven(how: str, folder: Path) -> dict[str, Any]:
 
 
 def test_a_run_killed_at_any_write_is_gone_on_with(faults, tmp_path):
-    told = driven("killed at every write", tmp_path)
+    told = driven("killed at writes", tmp_path, STEP)
     assert told["points"] > 60
     assert told["ends"] == [KILLED, faults.UNDISTURBED]
     assert told["different"] == []
 
 
 def test_a_run_killed_at_any_moment_is_gone_on_with(faults, tmp_path):
-    told = driven("killed at any moment", tmp_path)
-    assert told["kills"] == faults.KILLS
-    assert told["complete"] > 1
+    told = driven("killed at any moment", tmp_path, KILLS)
+    assert told["kills"] == KILLS
+    assert told["complete"] > 0
     assert told["different"] == 0
 
 
 def test_a_run_that_finds_no_room_at_any_write_says_so_and_is_gone_on_with(faults, tmp_path):
     """Some writes are no loss: what is taken away, and words nobody reads."""
-    told = driven("no room at every write", tmp_path)
+    told = driven("no room at writes", tmp_path, STEP)
     assert told["points"] > 60
-    assert set(told["ends"]) == {faults.DONE, faults.FAILED, faults.WRONG, faults.UNDISTURBED}
+    ends = {faults.DONE, faults.FAILED, faults.UNDISTURBED}
+    assert {faults.FAILED, faults.UNDISTURBED} <= set(told["ends"]) <= ends
     assert told["different"] == []
 
 

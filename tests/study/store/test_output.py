@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from animat.files import RunError
 from animat.settings import SettingsError
 from animat.study.store import lock, output
 from animat.study.store.lock import HeldError
@@ -65,7 +66,7 @@ def test_a_failure_leaves_what_was_there_and_keeps_what_was_done(tmp_path, error
     if force:
         written(out, "old")
     before = names(tmp_path)
-    expected = SettingsError if isinstance(error, OSError) else error
+    expected = RunError if isinstance(error, OSError) else error
     with pytest.raises(expected):
         written(out, force=force, then=lambda: raises(error))
     assert names(tmp_path) == [".out.partial", *before]
@@ -137,14 +138,14 @@ def test_a_file_is_no_directory(tmp_path):
     for force in (False, True):
         with pytest.raises(SettingsError, match="is a file"):
             written(tmp_path / "out", force=force)
-        with pytest.raises(SettingsError, match="cannot be made: Not a directory"):
+        with pytest.raises(SettingsError, match="cannot be written: Not a directory"):
             written(tmp_path / "out" / "deeper", force=force)
     assert (tmp_path / "out").read_text() == "mine"
 
 
 def test_what_cannot_be_made_is_told_before_any_work(tmp_path):
     for out in (Path("/proc/animat"), tmp_path / ("a" * 300)):
-        with pytest.raises(SettingsError, match="cannot be made"):
+        with pytest.raises(SettingsError, match="cannot be written"):
             written(out)
 
 
@@ -183,7 +184,7 @@ def test_an_earlier_result_comes_back_if_the_new_one_cannot_take_its_place(tmp_p
         return rename(self, target)
 
     monkeypatch.setattr(output.Path, "rename", fails)
-    with pytest.raises(SettingsError, match="cannot be written: broken disk"):
+    with pytest.raises(RunError, match="cannot be written: broken disk"):
         written(out, force=True)
     assert (out / "a").read_text() == "old"
     assert names(tmp_path) == [".out.partial", "out"]

@@ -62,18 +62,13 @@ def test_one_whose_holder_died_says_so(copied):
     assert line == "not run by anybody; process 7 on there, since then ended without a word"
 
 
-def test_failures_are_counted(faults, tmp_path):
+def test_failures_are_counted(faults, tmp_path, lost):
     own = tmp_path / "own.py"
-    own.write_text(
-        "def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):\n"
-        "    if luck_a < 0.004:\n"
-        '        raise ValueError("lost")\n'
-        "    return speed, speed\n"
-    )
+    own.write_text(lost)
     faults.go_on(
         faults.plan(
-            f'name = "failing"\nlives = 20\nsteps = 100\n[mind]\nwander = "{own}:walk"\n'
-            'agent = "AF"\n[teacher]\nrobots = 8\nsteps = 100\n'
+            f'name = "failing"\nlives = 20\nsteps = 200\n[mind]\nwander = "{own}:walk"\n'
+            'agent = "AF"\n[teacher]\nrobots = 8\nsteps = 200\n'
         ),
         tmp_path / "out",
     )

@@ -71,7 +71,7 @@ def test_a_part_of_another_study_is_refused(small, copied, faults, tmp_path):
     shutil.copy(tmp_path / "other" / "lives" / "part-000000.parquet", copied / "lives")
     with (
         open_store(copied, small) as held,
-        pytest.raises(SettingsError, match=r"part-000000\.parquet: holds lives of another study"),
+        pytest.raises(SettingsError, match=r"part-000000\.parquet: holds the lives of another"),
     ):
         held.finished(Part("lives", 0))
 

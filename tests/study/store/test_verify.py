@@ -11,7 +11,7 @@ import pytest
 
 from animat.study.living.numbering import Part
 from animat.study.living.parts import part_identity
-from animat.study.living.seal import seal_of, sealed
+from animat.study.living.seal import LIVED_AGAIN, seal_of, sealed
 from animat.study.store import verify as module
 from animat.study.store.results import Results
 from animat.study.store.verify import verify
@@ -103,7 +103,7 @@ def test_a_torn_file_is_found(copied, file):
     path = copied / f"{file}.parquet"
     path.write_bytes(path.read_bytes()[:-5])
     problems = looked(copied).problems
-    assert problems[0] == f"{path}: is torn"
+    assert problems[0].startswith(f"{path}: is torn; take it away")
 
 
 def test_a_lost_file_is_found_where_its_part_is_finished(copied):
@@ -123,14 +123,14 @@ def test_lives_whose_teachers_are_lost_are_told_of_and_not_lived_again(copied):
     path.unlink()
     assert looked(copied) == (2, 3, 1, [f"{path}: is missing, and lives were taught by it"])
     path.write_bytes(b"torn")
-    assert looked(copied) == (2, 3, 1, [f"{path}: is torn"])
+    assert looked(copied) == (2, 3, 1, [f"{path}: is torn; {LIVED_AGAIN}"])
 
 
 def test_a_part_in_the_place_of_another_is_found(copied):
     path = copied / "lives" / "part-000001.parquet"
     shutil.copy(copied / "lives" / "part-000000.parquet", path)
     (problem,) = looked(copied).problems
-    assert problem.startswith(f"{path}: holds other lives than it should; take it away")
+    assert problem.startswith(f"{path}: holds the lives of another part or study")
 
 
 def test_what_was_wrong_when_it_was_sealed_is_found_by_living_again(copied, small):
@@ -190,15 +190,13 @@ def test_lives_that_are_others_now_are_told_of(copied):
     assert problem.startswith(f"{copied}: its lives are not those that are lived now")
 
 
-def test_a_copy_of_a_file_that_is_none_any_more_is_found(faults, tmp_path):
+def test_a_copy_of_a_file_that_is_none_any_more_is_found(faults, tmp_path, lost):
     own = tmp_path / "own.py"
-    own.write_text(
-        "def walk(readings, a, s, memory, luck_a, luck_b, speed, turn):\n    return 1, 2\n"
-    )
+    own.write_text(lost)
     plan = faults.plan(f'name = "own"\nlives = 1\nsteps = 5\n[mind]\nwander = "{own}:walk"\n')
     faults.go_on(plan, tmp_path / "results")
     assert looked(tmp_path / "results").problems == []
-    (copy,) = (tmp_path / "results" / "inputs").iterdir()
+    copy = tmp_path / "results" / "inputs" / "outside" / own.relative_to("/")
     copy.write_text("")
     assert looked(tmp_path / "results").problems == [
         f"{copy}: is no copy of {own} any more; animat run with the same study writes it anew"

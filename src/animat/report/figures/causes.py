@@ -6,10 +6,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import PercentFormatter
 
-from animat.report.figures.style import BLACK, HATCHES, PALE, colours, new_figure, shortened, styled
+from animat.report.figures.style import BLACK, HATCHES, PALE, need_colours, new_figure, styled
+from animat.report.numerals import shortened
 from animat.report.survival import ALIVE, DeathCount
 
-_VARIABLES = {"nutrition": "#E69F00", "stamina": "#56B4E9", "restlessness": "#009E73"}
 _CAUSES = ("metabolism", "failure", "success")
 
 
@@ -18,8 +18,8 @@ def causes_figure(cells: Mapping[str, Sequence[DeathCount]]) -> Figure:
     """A stacked bar for each cell: colour is the variable, pattern the cause."""
     deaths = {d.label: d for counts in cells.values() for d in counts}
     labels = sorted(deaths, key=lambda label: (deaths[label].variable == ALIVE, label))
-    named = (d.variable for d in deaths.values() if d.variable != ALIVE)
-    fills = {**colours(sorted(set(named)), _VARIABLES), ALIVE: PALE}
+    fills = need_colours(d.variable for d in deaths.values() if d.variable != ALIVE)
+    fills[ALIVE] = PALE
     styles = {
         label: {
             "facecolor": fills[deaths[label].variable],
@@ -45,7 +45,7 @@ def causes_figure(cells: Mapping[str, Sequence[DeathCount]]) -> Figure:
                     fontsize=8, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.2},
                 )  # fmt: skip
             left += width
-    ax.set_yticks(range(len(cells)), [shortened(name) for name in cells])
+    ax.set_yticks(range(len(cells)), list(shortened(cells).values()))
     ax.invert_yaxis()
     ax.set_xlim(0, 1)
     ax.xaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))

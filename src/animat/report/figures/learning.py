@@ -9,11 +9,8 @@ from matplotlib.patches import Patch
 
 from animat.report.figures.style import (
     BLACK,
-    BLUE,
-    GREEN,
     GREY,
-    PALE,
-    VERMILLION,
+    need_colours,
     new_figure,
     styled,
     type_colours,
@@ -36,27 +33,29 @@ def learning_figure(
 
     Figure 3 is the default; Figure 4 has stamina, fatigue, shelter, shelter. `trace` needs the
     columns step, object, behaviour, reward, `variable`, `drive` and likelihood_`behaviour`.
-    Shaded: the steps in which `behaviour` runs; the network holds its value in all others.
+    Shaded: the steps in which `behaviour` runs; the network holds its value in all others, and has
+    none before it was first asked. What is about one need has one colour.
     """
     rows = trace.slice(max(0, trace.num_rows - steps))
     step = column(rows, "step")
     fig = new_figure(7.2, 6.4)
     axes = fig.subplots(5, 1, sharex=True, height_ratios=[1.3, 1, 1, 0.8, 1])
     acting = column(rows, "behaviour") == behaviour
+    colour = need_colours([variable])[variable]
+    shade = {"color": colour, "alpha": 0.18, "lw": 0}
     for ax in axes:
         for start, stop in spans(acting):
-            ax.axvspan(step[start] - 0.5, step[stop - 1] + 0.5, color=PALE, lw=0, zorder=0)
+            ax.axvspan(step[start] - 0.5, step[stop - 1] + 0.5, zorder=0, **shade)
     _objects(axes[0], step, column(rows, "object"), types)
-    axes[1].plot(step, column(rows, variable), color=BLUE)
+    axes[1].plot(step, column(rows, variable), color=colour)
     axes[1].set_ylabel(variable)
-    axes[2].plot(step, column(rows, drive), color=VERMILLION)
+    axes[2].plot(step, column(rows, drive), color=colour)
     axes[2].set_ylabel(drive)
     reward = column(rows, "reward")
     at = reward != 0
     axes[3].axhline(0, color=GREY, lw=0.8)
-    signs = np.where(reward[at] > 0, GREEN, VERMILLION).tolist()
-    axes[3].vlines(step[at], 0, reward[at], colors=signs, lw=2.0)
-    axes[3].scatter(step[at], reward[at], c=signs, s=13, zorder=3)
+    axes[3].vlines(step[at], 0, reward[at], colors=BLACK, lw=2.0)
+    axes[3].scatter(step[at], reward[at], c=BLACK, s=13, zorder=3)
     axes[3].set_ylim(-1.4, 1.4)
     axes[3].set_yticks([-1, 0, 1], ["−1", "0", "+1"])
     axes[3].set_ylabel("learning\nreward")
@@ -69,7 +68,7 @@ def learning_figure(
     axes[4].xaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
     fig.align_ylabels(axes)
     fig.legend(
-        handles=[Patch(color=PALE, label=f"the robot runs '{behaviour}'; elsewhere its network "
+        handles=[Patch(**shade, label=f"the robot runs '{behaviour}'; elsewhere its network "
                        "keeps its last output")],
         loc="outside lower center",
     )  # fmt: skip

@@ -14,9 +14,9 @@ from animat.report.figures.style import (
     GREY,
     VERMILLION,
     new_figure,
-    shortened,
     styled,
 )
+from animat.report.numerals import shortened
 
 _POINTS = LinearSegmentedColormap.from_list("points", [VERMILLION, "white", BLUE])
 _UNSURE = "#666666"
@@ -111,7 +111,9 @@ def _by_contrast(effects: pa.Table) -> dict[tuple[str, str], dict[str, dict]]:
 def _words(found: Mapping[tuple[str, str], Mapping[str, dict]]) -> list[str]:
     """What is compared, in words that leave room for the drawing."""
     against = [next(iter(rows.values()))["against"] for rows in found.values()]
+    readings = shortened((reading for reading, _ in found), 22)
+    values = shortened([*against, *(value for _, value in found)], 14)
     return [
-        f"{shortened(reading, 22)}: {shortened(value, 14)}, not {shortened(other, 14)}"
+        f"{readings[reading]}: {values[value]}, not {values[other]}"
         for (reading, value), other in zip(found, against, strict=True)
     ]

@@ -12,10 +12,10 @@ from animat.report.figures.style import (
     GREY,
     PALE,
     new_figure,
-    shortened,
     spread_out,
     styled,
 )
+from animat.report.numerals import shortened
 
 
 @styled
@@ -39,7 +39,8 @@ def margins_figure(factors: Mapping[str, Mapping[str, Estimate]], overall: float
             ax.plot([low, high], [place, place], color=BLUE, lw=1.6, solid_capstyle="butt")
             ax.plot(value, place, "o", color=BLUE, ms=5)
         place += 1
-    ax.set_yticks([at for at, _, _ in ticks], [shortened(label) for _, label, _ in ticks])
+    said = shortened(label for _, label, _ in ticks)
+    ax.set_yticks([at for at, _, _ in ticks], [said[label] for _, label, _ in ticks])
     for text, (_, _, heading) in zip(ax.get_yticklabels(), ticks, strict=True):
         text.set_fontweight("bold" if heading else "normal")
     ax.tick_params(axis="y", length=0)

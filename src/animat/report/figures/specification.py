@@ -8,10 +8,11 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from animat.report.figures.style import BLACK, BLUE, GREY, new_figure, shortened, styled
+from animat.report.figures.style import BLACK, BLUE, GREY, new_figure, styled
 from animat.report.figures.verdicts import VERDICT_COLOURS
 from animat.report.lives import column
 from animat.report.multiverse.readings import Readings, codes
+from animat.report.numerals import shortened
 
 MOST_COLUMNS = 100
 """Columns of the dashboard; more universes than this share one."""
@@ -38,10 +39,11 @@ def specification_figure(
     value = column(universes, effect).astype(np.float64)
     order = np.argsort(value, kind="stable")
     code = codes(universes, readings)[order]
+    names = shortened(readings, 24)
     rows = [
-        f"{shortened(name, 24)}: {shortened(value, 16)}"
+        f"{names[name]}: {value}"
         for name, values in readings.items()
-        for value in values
+        for value in shortened(values, 16).values()
     ]
     fig = new_figure(7.2, 3.0 + 0.165 * len(rows))
     above, below = fig.subplots(

@@ -5,8 +5,10 @@ where two things meet, a pattern or a line style tells them apart as well, for p
 """
 
 import io
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from colorsys import hsv_to_rgb
 from functools import wraps
+from itertools import count
 from pathlib import Path
 from typing import Any, ParamSpec
 
@@ -42,6 +44,7 @@ _TYPE_WORDS = {
     "CL": "CL, large circle",
 }
 _AGENTS = {"BLIND": ORANGE, "AF": BLUE}
+_NEEDS = {"nutrition": ORANGE, "stamina": BLUE, "restlessness": GREEN}
 
 _OTHER = ("backend", "interactive", "toolbar", "webagg", "keymap", "animation", "date", "tk")
 
@@ -87,21 +90,40 @@ def new_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def colours(names: Iterable[str], known: dict[str, str]) -> dict[str, str]:
-    """A colour for each name: its own if it is known, else the next one nobody has."""
+def colours(
+    names: Iterable[str], known: Mapping[str, str], taken: Iterable[str] = ()
+) -> dict[str, str]:
+    """A colour for each name: its own if it is known, else the next one nobody has.
+
+    Nobody new gets a colour that is `taken`, nor one that two have.
+    """
     names = list(dict.fromkeys(names))
-    taken = {known[name] for name in names if name in known}
-    free = [colour for colour in PALETTE if colour not in taken] or list(PALETTE)
-    unknown = [name for name in names if name not in known]
-    given = {name: free[i % len(free)] for i, name in enumerate(unknown)}
-    return {name: known.get(name) or given[name] for name in names}
+    others = _hues({*taken, *(known[name] for name in names if name in known)})
+    return {name: known[name] if name in known else next(others) for name in names}
+
+
+def _hues(taken: set[str]) -> Iterator[str]:
+    """The colours of the palette, then, without end, others, but for those that are taken."""
+    yield from (colour for colour in PALETTE if colour not in taken)
+    for number in count(1):
+        colour = to_hex(hsv_to_rgb(0.618034 * number % 1.0, 0.75, (0.9, 0.55)[number % 2]))
+        if colour.upper() not in taken:
+            yield colour.upper()
 
 
 def type_colours(types: Iterable[str]) -> dict[str, str]:
-    """A colour for each object type, Table 1's first; those always have the same."""
+    """A colour for each object type, Table 1's first; those always have the same.
+
+    None is black, white or the green of what sensors reach, in which figures mark other things.
+    """
     types = list(types)
     listed = [name for name in _TYPES if name in types]
-    return colours([*listed, *types], _TYPES)
+    return colours([*listed, *types], _TYPES, taken=(*_TYPES.values(), GREEN, BLACK))
+
+
+def need_colours(variables: Iterable[str]) -> dict[str, str]:
+    """A colour for each variable, its drive and what serves it; in any order they are the same."""
+    return colours(sorted(set(variables)), _NEEDS, taken=(*_NEEDS.values(), BLACK))
 
 
 def agent_colours(agents: Iterable[str]) -> dict[str, str]:
@@ -114,11 +136,6 @@ def shades(names: Sequence[str]) -> dict[str, str]:
     scale = colormaps["cividis"]
     last = max(len(names) - 1, 1)
     return {name: to_hex(scale(0.75 * place / last)) for place, name in enumerate(names)}
-
-
-def shortened(label: str, most: int = 44) -> str:
-    """A label that leaves room for the drawing."""
-    return label if len(label) <= most else label[: most - 1] + "…"
 
 
 def legend_columns(labels: Sequence[str]) -> int:

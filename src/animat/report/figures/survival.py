@@ -15,9 +15,9 @@ from animat.report.figures.style import (
     legend_columns,
     new_figure,
     shades,
-    shortened,
     styled,
 )
+from animat.report.numerals import shortened
 from animat.report.survival import KaplanMeier
 
 POINTS = 400
@@ -54,8 +54,9 @@ def level_curves_figure(
 ) -> Figure:
     """The same for each level of a factor; `ordered` levels are numbers, pale to dark."""
     fills = shades(list(curves)) if ordered else agent_colours(curves)
+    said = shortened(curves)
     lines = [
-        Line(shortened(label), curve, fills[label], LINES[number % len(LINES)])
+        Line(said[label], curve, fills[label], LINES[number % len(LINES)])
         for number, (label, curve) in enumerate(curves.items())
     ]
     return _drawn(lines, log)

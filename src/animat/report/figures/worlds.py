@@ -1,6 +1,6 @@
 """Figure 2: worlds drawn to scale, with a robot and what its sensors reach."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -63,10 +63,7 @@ def worlds_figure(worlds: Sequence[WorldDrawing], robot: RobotDrawing) -> Figure
         ax.set_xlim(-0.01 * widest, 1.01 * widest)
         ax.set_ylim(-0.01 * highest, 1.01 * highest)
         ax.set_title(f"{world.title}: {_count(len(world.types))}")
-    handles = [
-        Patch(facecolor=colour, edgecolor=BLACK, linewidth=0.6, label=type_words(name))
-        for name, colour in colours.items()
-    ]
+    handles = type_handles(colours)
     if any(world.pose is not None for world in worlds):
         handles.append(
             Patch(facecolor="white", edgecolor=BLACK, linewidth=1.0, label="robot, to scale")
@@ -91,6 +88,14 @@ def draw_world(ax: Axes, world: WorldDrawing, colours: dict[str, str]) -> None:
     ax.set_ylim(0, world.height)
     ax.set_xlabel("x (mm)")
     ax.set_ylabel("y (mm)")
+
+
+def type_handles(colours: Mapping[str, str]) -> list[Patch]:
+    """What a legend says of object types."""
+    return [
+        Patch(facecolor=colour, edgecolor=BLACK, linewidth=0.6, label=type_words(name))
+        for name, colour in colours.items()
+    ]
 
 
 def draw_robot(ax: Axes, robot: RobotDrawing, pose: tuple[float, float, float]) -> None:

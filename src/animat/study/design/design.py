@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import tomli_w
 from pydantic import AfterValidator, Field
 
+from animat.arguments import instance
 from animat.settings import Settings, SettingsError
 from animat.study.design.axes import axes, combinations, factors, left_out
 from animat.study.design.factors import Factor, Scalar, Value, Values
@@ -95,6 +96,7 @@ def cases(study: Study) -> list[Case]:
         SettingsError: with a line for every mistake in the design, and for every mistake that
             some of the cases share.
     """
+    instance("study.design", getattr(study, "design", None), Design)
     base = study.varied()
     found = design_mistakes(study.design, base)
     lines = [line for mistake in found for line in mistake.lines()]
@@ -136,6 +138,7 @@ def excluded(study: Study) -> list[Excluded]:
 
     Raises SettingsError for a design with mistakes.
     """
+    instance("study.design", getattr(study, "design", None), Design)
     found = design_mistakes(study.design, study.varied())
     if found:
         raise SettingsError(*told(line for mistake in found for line in mistake.lines()))

@@ -6,6 +6,7 @@ quotes, as in TOML: `mind.variables."my own".rate`.
 
 from __future__ import annotations
 
+import copy
 import re
 from collections.abc import Iterator
 from functools import cache, lru_cache
@@ -13,18 +14,26 @@ from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel
 
+from animat.mind.mind import PAPER_BEHAVIOURS, PAPER_DRIVES
 from animat.mind.physiology import PHYSIOLOGIES
 from animat.mistakes import allowed_types, inside, is_model, nearest, plain, written
+from animat.settings import SettingsError
 
 Key = tuple[str, ...]
 
-VARIABLES: Key = ("mind", "variables")
-"""The one table in which a key may go into what is not written down: the physiology has it."""
+CHANGED: dict[Key, dict[str, Any]] = {
+    ("mind", "variables"): {n: {} for n in PHYSIOLOGIES["excess"]},
+    ("mind", "drives"): {n: each.model_dump(mode="json") for n, each in PAPER_DRIVES.items()},
+    ("mind", "behaviours"): {
+        n: each.model_dump(mode="json", exclude_none=True) for n, each in PAPER_BEHAVIOURS.items()
+    },
+}
+"""Tables in which a key may go into what is not written down: the paper has it, as here."""
 
 _PART = r"""[A-Za-z0-9_-]+|"[^"\\\x00-\x1f]*"|'[^'\x00-\x1f]*'"""
 
 
-class UnknownKeyError(ValueError):
+class UnknownKeyError(SettingsError):
     """A key that no setting has."""
 
 
@@ -55,7 +64,7 @@ def put(data: dict[str, Any], model: type[BaseModel], key: Key, value: Any) -> N
             node[part] = value
             return
         if part not in node:
-            node[part] = _default(table, part)
+            node[part] = copy.deepcopy(_default(table, part, key[:depth]))
         node = node[part]
 
 
@@ -96,7 +105,7 @@ def _known(table: Any, node: dict[str, Any], key: Key, depth: int) -> list[str]:
         return [key[depth]]
     entries = _entries(node, key[:depth])
     # A whole table may be new, but a part of one that is not there would be a misspelling.
-    may_be_new = depth == len(key) - 1 or key[:depth] == VARIABLES
+    may_be_new = depth == len(key) - 1 or key[:depth] == ("mind", "variables")
     return [*entries, key[depth]] if may_be_new else entries
 
 
@@ -111,22 +120,17 @@ def _holds_tables(table: Any) -> bool:
 
 
 def _entries(node: dict[str, Any], key: Key) -> list[str]:
-    return list(dict.fromkeys([*node, *(PHYSIOLOGIES["excess"] if key == VARIABLES else ())]))
+    return list(dict.fromkeys([*node, *CHANGED.get(key, ())]))
 
 
-def _default(table: Any, part: str) -> dict[str, Any]:
-    """Return the table that is in force under a key where none is written."""
+def _default(table: Any, part: str, key: Key) -> dict[str, Any]:
+    """Return the table that is in force under a part of the table `key` where none is written."""
     if not is_model(table):
-        return {}
+        return CHANGED.get(key, {}).get(part, {})
     default = table.model_fields[part].default
-    if not isinstance(default, dict):
+    if not default or not isinstance(default, dict):
         return {}
-    return {
-        name: each.model_dump(mode="json", exclude_none=True)
-        if isinstance(each, BaseModel)
-        else each
-        for name, each in default.items()
-    }
+    return CHANGED.get((*key, part), default)
 
 
 def _keys(annotation: Any, node: Any, key: Key) -> Iterator[Key]:
@@ -136,11 +140,12 @@ def _keys(annotation: Any, node: Any, key: Key) -> Iterator[Key]:
         yield key
     elif is_model(table):
         for name in fields(table):
-            below = node.get(name, _default(table, name))
+            below = node.get(name, _default(table, name, key))
             yield from _keys(table.model_fields[name].annotation, below, (*key, name))
     elif _holds_tables(table):
         for name in _entries(node, key):
-            yield from _keys(get_args(table)[1], node.get(name), (*key, name))
+            below = node.get(name, _default(table, name, key))
+            yield from _keys(get_args(table)[1], below, (*key, name))
     else:
         yield from ((*key, name) for name in node)
         yield key

@@ -21,6 +21,7 @@ from animat.mistakes import (
     plain,
     written,
 )
+from animat.names import LIVES, OF_A_STUDY, column_like, malformed
 from animat.settings import validated
 from animat.study.design.axes import size
 from animat.study.design.factors import Range, Scalar, identity
@@ -40,15 +41,6 @@ if TYPE_CHECKING:
 
 MOST_CASES = 100_000
 """Combinations of a design, those left out included."""
-
-COLUMNS = (
-    "case", "identity", "same_as", "error", "world", "agent", "seed", "life", "lifespan",
-    "censored", "death_variable", "death_side", "death_cause", "encounters", "acts", "successes",
-    "failures", "disregarded", "unreached", "blocked", "trainings", "mean_drive", "robot",
-    "weights",
-)  # fmt: skip
-COLUMN_PREFIXES = ("acts_", "successes_", "likelihood_")
-"""Columns of the tables of a study, and how others begin; no factor may be called so."""
 
 VARIES = tuple(CaseSettings.model_fields)
 
@@ -147,8 +139,10 @@ def _own_names(design: Design) -> Iterator[Mistake]:
             line = f'is a section; for the values of a setting quote its key, "{name}.KEY" = [...]'
         elif not name or "." in name:
             line = "a factor with levels needs a name of your own, without a dot"
-        elif name in COLUMNS or name.startswith(COLUMN_PREFIXES):
-            line = "is a column of the table of lives; give the factor another name"
+        elif problem := malformed(name):
+            line = problem
+        elif column := column_like(name, LIVES, OF_A_STUDY):
+            line = f"is called like the column {column} of a table; give it another name"
         elif name in seen:
             line = "another factor has this name"
         else:

@@ -6,6 +6,7 @@ mistake told at once. A study file has more: what else may differ from case to c
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,12 +14,15 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
+from animat.arguments import instance
 from animat.life.life import LONGEST
 from animat.mind.mind import Mind
 from animat.mistakes import plain
+from animat.names import malformed
 from animat.robot.khepera import Khepera
 from animat.settings import Settings, SettingsError, nearest
 from animat.world.arena import Arena
+from animat.world.files import Name
 from animat.world.layout import MINIMUM_GAP
 from animat.world.world import RESOLUTION, World
 
@@ -34,7 +38,7 @@ class WorldChoice(Settings):
     """
 
     layout: str = "abundant"
-    name: Annotated[str, Field(min_length=1)] | None = None
+    name: Name | None = None
     counts: dict[str, Annotated[int, Field(ge=0)]] | None = None
     seed: Annotated[int, Field(ge=0)] = 0
     gap: Annotated[float, Field(ge=0.0)] = MINIMUM_GAP
@@ -135,10 +139,14 @@ class CaseSettings(LifeSettings):
     def _own(cls, worlds: dict[str, WorldChoice]) -> dict[str, WorldChoice]:
         problems = []
         for name, choice in worlds.items():
-            if name in {"", "random", *PUBLISHED} or Path(name).suffix == ".toml":
+            if problem := malformed(name):
+                problems.append(f"{plain(name)}: {problem}")
+            elif name in {"", "random", *PUBLISHED} or Path(name).suffix == ".toml":
                 problems.append(f"{plain(name)} is taken; give the world a name of its own")
             elif choice.layout in worlds:
                 problems.append(f'{plain(name)} has layout = "{choice.layout}", itself one of them')
+        told = Counter(choice.name or name for name, choice in worlds.items())
+        problems += [f"{times} are called {plain(n)}" for n, times in told.items() if times > 1]
         if problems:
             raise ValueError("\n".join(problems))
         return worlds
@@ -149,6 +157,7 @@ class CaseSettings(LifeSettings):
         What is set beside the name goes before what that world sets. Raises SettingsError for a
         layout that is no world.
         """
+        instance("choice", choice, WorldChoice)
         if choice.layout not in self.worlds:
             _refuse_unknown(choice.layout, [*self.worlds, *PUBLISHED, "random"])
             return choice

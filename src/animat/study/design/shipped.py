@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from animat import arguments
 from animat.files import check_writable, write_whole
 from animat.settings import SettingsError, nearest
 
@@ -31,7 +32,7 @@ def study_file(study: str) -> Path:
 
     Raises SettingsError for what is neither; whether a .toml file is there shows on reading.
     """
-    path = Path(study)
+    path = arguments.path("study", study)
     is_path = path.suffix == ".toml" or path.parent != Path() or path.is_file()
     return path if is_path else shipped(study)
 

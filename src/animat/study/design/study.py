@@ -5,7 +5,6 @@ A study file is a settings file with more in it; docs/studies.md describes it.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -14,20 +13,22 @@ import tomli_w
 from pydantic import AfterValidator, Field, ValidationError, field_validator, model_validator
 from pydantic_core import PydanticSerializationError
 
+from animat import arguments
+from animat.arguments import sequence
 from animat.life.life import TraceChoice
 from animat.life.setting import LifeError
-from animat.mistakes import mistakes, plain, written
+from animat.mistakes import mistakes, written
 from animat.settings import (
     Settings,
     SettingsError,
-    parse_text,
     parse_toml,
     validated,
     values_within,
 )
 from animat.study.design.design import Design, cases
 from animat.study.design.factors import each_once
-from animat.study.design.keys import Key, UnknownKeyError, put, read_key
+from animat.study.design.keys import Key
+from animat.study.design.overrides import led_by, override
 from animat.study.design.refusals import VARIES, design_mistakes, varied_keys
 from animat.study.design.settings import CaseSettings, Teacher
 from animat.study.design.shipped import LONGEST_NAME, is_name
@@ -122,11 +123,17 @@ def read_study(path: Path | str, overrides: Sequence[str] = ()) -> Study:
     The value is TOML, or a bare word, which is taken for a string. Raises SettingsError, with a
     line for every mistake in the file, in the overrides and in the design.
     """
-    data = parse_toml(path)
+    path = arguments.path("path", path)
+    overrides = sequence("overrides", overrides, str)
+    return study_of(parse_toml(path), str(path), overrides)
+
+
+def study_of(data: dict[str, Any], where: str, overrides: Sequence[str] = ()) -> Study:
+    """Return the study that TOML says, as `read_study` does; `where` leads the lines of errors."""
     unshown = [written(key) for key, _ in values_within(data) if not str(key[-1]).isprintable()]
     if unshown:
-        raise SettingsError(*(f"{path}: key {key}: cannot be printed" for key in told(unshown)))
-    overridden, problems = _override(data, overrides)
+        raise SettingsError(*(f"{where}: key {key}: cannot be printed" for key in told(unshown)))
+    overridden, problems = override(data, Study, overrides, _spell_out)
     design = _design_of(data)
     problems += [
         f"--set {written(key)}: the design varies it; change the design"
@@ -147,41 +154,8 @@ def read_study(path: Path | str, overrides: Sequence[str] = ()) -> Study:
             return study
         lines = []
     raise SettingsError(
-        *problems, *(f"{_led_by(line, overridden, path)}: {line}" for line in lines)
+        *problems, *(f"{led_by(line, [('--set', overridden)], where)}: {line}" for line in lines)
     )
-
-
-def _override(data: dict[str, Any], overrides: Sequence[str]) -> tuple[list[Key], list[str]]:
-    """Change what a study file says; return the keys changed, and what could not be."""
-    _spell_out(data)
-    changed: list[Key] = []
-    problems: list[str] = []
-    for text in overrides:
-        try:
-            key, value = _key_and_value(text)
-            put(data, Study, key, value)
-            _spell_out(data)
-            changed.append(key)
-        except UnknownKeyError as error:
-            problems.append(f"--set {plain(text)}: {error}")
-    return changed, problems
-
-
-def _key_and_value(text: str) -> tuple[Key, Any]:
-    """Return key and value of "key=value". Raises UnknownKeyError for what is not so."""
-    name, equals, value = (part.strip() for part in text.partition("="))
-    if not equals:
-        raise UnknownKeyError("is not written key=value")
-    key = read_key(name)
-    try:
-        given = parse_text(f"value = {value}\n", "")
-    except SettingsError:
-        given = {}
-    if list(given) == ["value"]:
-        return key, given["value"]
-    if re.fullmatch(r"[^\s\"'\[\]{}#=,]+", value) and value.isprintable():
-        return key, value
-    raise UnknownKeyError("its value is neither TOML nor a bare word")
 
 
 def _spell_out(data: dict[str, Any]) -> None:
@@ -207,14 +181,6 @@ def _suits(name: str, part: Any) -> bool:
     except ValidationError:
         return False
     return True
-
-
-def _led_by(line: str, overridden: Sequence[Key], path: Path | str) -> str:
-    """Return where a mistake was made: on the command line or in the file."""
-    for key in overridden:
-        if re.match(re.escape(f"key {written(key)}") + r"(?![\w-])", line):
-            return "--set"
-    return str(path)
 
 
 def _overlap(one: Key, other: Key) -> bool:

@@ -20,6 +20,7 @@ from animat.life.setting import Setting
 from animat.life.summary import NAMES as LIFE_NAMES
 from animat.life.summary import summary, without_failed
 from animat.mind.mind import Mind
+from animat.names import LIKELIHOOD, spelled
 from animat.study.living.identity import networks_matter
 from animat.study.living.numbering import Kind
 from animat.study.living.plan import Plan, world_of
@@ -127,11 +128,11 @@ def _schema_of(plan: Plan, kind: Kind, place: int) -> pa.Schema:
 
 def _likelihood_columns(setting: Setting, states: NDArray[np.void]) -> dict[str, pa.Array]:
     said = likelihoods(setting, states)
-    return {
-        f"likelihood_{behaviour}_{kind.name}": pa.array(said[:, b, t], from_pandas=True)
-        for b, behaviour in enumerate(setting.mind.behaviours)
-        for t, kind in enumerate(setting.world.types)
-    }
+    types = [kind.name for kind in setting.world.types]
+    flat = said.reshape(len(said), math.prod(said.shape[1:]))
+    names = spelled((LIKELIHOOD,), behaviour=setting.mind.behaviours, object=types)
+    columns = (pa.array(one, from_pandas=True) for one in flat.T)
+    return dict(zip(names, columns, strict=True))
 
 
 def _weights(states: NDArray[np.void]) -> pa.Array:

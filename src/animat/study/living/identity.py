@@ -22,7 +22,7 @@ from animat.mind.agents import ACCEPT_ALL, ASK_NETWORKS, ASK_TRUTH
 from animat.mind.functions import BUILT_IN, Functions
 from animat.mind.mind import Mind
 from animat.mind.selection import RANDOM, WINNER_TAKE_ALL
-from animat.numerics.fingerprint import fingerprint
+from animat.numerics.snapshot import lasting_identity
 from animat.robot.khepera import Khepera
 from animat.settings import SettingsError
 from animat.world.files import world_file
@@ -87,7 +87,7 @@ def _parts(lived: Lived, traced: bool) -> Iterator[bytes]:
         own = getattr(lived.functions, role)
         if own is not built_in and role not in unread:
             try:
-                yield f"{role} {fingerprint(own)}".encode()
+                yield f"{role} {lasting_identity(own)}".encode()
             except SettingsError as error:
                 raise LifeError(f"{role}: {error}") from None
     if networks:

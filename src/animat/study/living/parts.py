@@ -11,7 +11,7 @@ import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from threading import Event
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from animat.life.batch import EPISODES, Batch, BatchResult
 from animat.life.engine import ENGINE
 from animat.life.life import TraceChoice
+from animat.study.design.study import Study
 from animat.study.living.columns import (
     joined,
     life_columns,
@@ -128,15 +129,20 @@ def file_names(plan: Plan, part: Part) -> list[str]:
 
 def part_identity(plan: Plan, part: Part) -> str:
     """Return the identity of the lives of a part, and of what is told of them."""
-    lived = []
+    lived: list[list[Any]] = []
     for place, start, stop in plan.pieces(part):
         if part.kind == "teachers":
             lived.append([plan.classes[place].identity, start, stop])
         else:
             number = plan.lived[place].number
             lived.append([number, plan.identities[number], start, stop])
-    record = plan.study.record and plan.study.record.model_dump()
-    told = [ENGINE, part.kind, part.number, plan.study.measures, record, lived]
+    return identity_of(ENGINE, plan.study, part, lived)
+
+
+def identity_of(engine: int, study: Study, part: Part, lived: list[list[Any]]) -> str:
+    """Return the identity of a part of which it is known who `lived` in it, piece by piece."""
+    record = study.record and study.record.model_dump()
+    told = [engine, part.kind, part.number, study.measures, record, lived]
     return hashlib.sha256(json.dumps(told).encode()).hexdigest()[:32]
 
 

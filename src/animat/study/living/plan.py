@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import tomllib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
+from pathlib import Path
 from threading import Lock
 from typing import Any, NamedTuple
 
@@ -19,8 +20,10 @@ import pyarrow as pa
 
 from animat.life.setting import Setting, bring_together
 from animat.mind.functions import Functions
+from animat.mind.loading import imported_files
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
+from animat.numerics.snapshot import source_files
 from animat.settings import SettingsError, validated
 from animat.study.design.design import Case, cases
 from animat.study.design.settings import Teacher, WorldChoice
@@ -131,11 +134,7 @@ class Plan:
 
     def case_table(self) -> pa.Table:
         """Return the table of cases: `case`, a column for each factor, `identity`, `same_as`."""
-        names = list(dict.fromkeys(name for case in self.cases for name in case.factors))
-        columns: dict[str, Any] = {"case": [case.number for case in self.cases]}
-        for name in names:
-            columns[name] = _alike([case.factors.get(name) for case in self.cases])
-        return pa.table({**columns, "identity": self.identities, "same_as": self.same_as})
+        return case_table(self.cases, self.identities, self.same_as)
 
     def _number_all(self) -> None:
         first: dict[str, int] = {}
@@ -188,10 +187,20 @@ class Plan:
         key = tuple(map(str, (*laws, *others, *learning)))
         with self._lock:
             if key not in self._functions:
-                self._functions[key] = mind.functions(check=self.check_functions)
-                own = (each.rpartition(":")[0] for each in key if ".py:" in each)
-                self.inputs.update(own)
+                functions = mind.functions(check=self.check_functions)
+                self._functions[key] = functions
+                for role, own in mind.own_functions().items():
+                    self.inputs.update(_function_files(str(own), getattr(functions, role)))
             return self._functions[key]
+
+
+def case_table(laid_out: Sequence[Case], identities: list[str], same_as: list[int]) -> pa.Table:
+    """Return cases as a table; see `Plan.case_table`."""
+    names = list(dict.fromkeys(name for case in laid_out for name in case.factors))
+    columns: dict[str, Any] = {"case": [case.number for case in laid_out]}
+    for name in names:
+        columns[name] = _alike([case.factors.get(name) for case in laid_out])
+    return pa.table({**columns, "identity": identities, "same_as": same_as})
 
 
 @lru_cache(maxsize=2)
@@ -226,6 +235,22 @@ def untaught(mind: Mind, school: World) -> Networks:
     shape = len(mind.behaviours), mind.weight_count(len(school.feature_names))
     hidden = mind.learning.hidden_units
     return Networks(tuple(mind.behaviours), school.feature_names, hidden, np.zeros(shape))
+
+
+def _function_files(address: str, function: Any) -> set[str]:
+    """Return the files of a custom function: its own, and those that it imports or calls.
+
+    They are named as the study names the first, from the folder that the program runs in or from
+    the root; what lies outside that folder is always named from the root.
+    """
+    given = Path(address.rpartition(":")[0])
+    found = imported_files(given) | {Path(file) for file in source_files(function)}
+    here = Path.cwd()
+    names = {str(given)}
+    for file in found - {given.resolve()}:
+        is_near = not given.is_absolute() and file.is_relative_to(here)
+        names.add(str(file.relative_to(here) if is_near else file))
+    return names
 
 
 def _alike(values: list[Any]) -> pa.Array:

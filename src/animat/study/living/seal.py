@@ -22,6 +22,9 @@ import pyarrow.parquet as pq
 
 KEY = "animat"
 
+LIVED_AGAIN = "take it away, and animat run with the same study lives it again"
+OTHERS = f"holds the lives of another part or study, not its own; {LIVED_AGAIN}"
+
 SOUGHT = ("case", "life", "step")
 """Columns whose least and largest values stand in a file, so that a reader can pass it over."""
 
@@ -64,6 +67,8 @@ def sealed(
 def seal_of(path: Path) -> Seal | None:
     """Return the seal of a file; None if there is no such file, or it is torn or not sealed."""
     try:
+        if not path.is_file():
+            return None
         metadata = pq.read_metadata(path)
         seal = Seal(**json.loads((metadata.metadata or {})[KEY.encode()]))
     except (OSError, ValueError, TypeError, KeyError, pa.ArrowException):
@@ -81,6 +86,23 @@ def content_of(path: Path) -> str:
     except (OSError, ValueError, pa.ArrowException):
         return ""
     return digest.hexdigest()
+
+
+def wrong_with(
+    path: Path, identity: str, rows: int | None = None, *, unread: bool = False
+) -> str | None:
+    """Return what is wrong with a file that should hold lives of an identity; None if nothing is.
+
+    `rows` are those it should have, if that is known. `unread` leaves its values out.
+    """
+    seal = seal_of(path)
+    if seal is None:
+        return f"{path}: is torn; {LIVED_AGAIN}" if path.exists() else f"{path}: is missing"
+    if seal.identity != identity or rows not in {None, seal.rows}:
+        return f"{path}: {OTHERS}"
+    if not unread and content_of(path) != seal.content:
+        return f"{path}: has changed since it was written; {LIVED_AGAIN}"
+    return None
 
 
 def content(table: pa.Table) -> str:

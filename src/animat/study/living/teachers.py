@@ -10,16 +10,22 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from animat.settings import SettingsError
+from animat.study.living.parts import part_identity
 from animat.study.living.plan import Plan, world_of
+from animat.study.living.seal import wrong_with
 
 
 def read_networks(directory: Path, plan: Plan, place: int) -> NDArray[np.float64]:
     """Return the weights [robots, B, W] of a class, all of whose parts are finished.
 
-    They are NaN for robots that failed.
+    They are NaN for robots that failed. Raises SettingsError where a file is not as it was written.
     """
-    files = [directory / part.file for part in plan.parts_of_class(place)]
-    return networks_of(plan, place, pa.concat_tables(pq.read_table(file) for file in files))
+    parts = {directory / part.file: part for part in plan.parts_of_class(place)}
+    wrong = [wrong_with(file, part_identity(plan, part)) for file, part in parts.items()]
+    if any(wrong):
+        raise SettingsError(*filter(None, wrong))
+    return networks_of(plan, place, pa.concat_tables(pq.read_table(file) for file in parts))
 
 
 def networks_of(plan: Plan, place: int, table: pa.Table) -> NDArray[np.float64]:

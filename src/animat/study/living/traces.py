@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from animat.life.batch import Batch, BatchResult, Snapshot, advance
 from animat.life.life import Moment, TraceChoice, lived
 from animat.life.trace import row_dtype, table
+from animat.names import WHICH
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Traced:
         """Return the columns of these traces: `case`, `life`, and those of docs/tables.md."""
         setting = self.batch.setting
         none = table(np.zeros(0, row_dtype(self.result.states.dtype)), setting.mind, setting.world)
-        names = [pa.field("case", pa.int64()), pa.field("life", pa.int64())]
+        names = [pa.field(name, pa.int64()) for name in WHICH]
         return pa.schema([*names, *none.schema])
 
     def tables(self, choice: TraceChoice, wanted: pa.Schema) -> Iterator[pa.Table]:

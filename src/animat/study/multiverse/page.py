@@ -33,6 +33,7 @@ from animat.study.multiverse.tables import (
     shares_table,
     smallest_table,
 )
+from animat.study.page.inputs import inputs_sections
 from animat.study.provenance import provenance
 
 GAINS = {
@@ -79,7 +80,7 @@ def publish(found: Multiverse, directory: Path, command: str, tell: Callable[[],
     page.write_page(
         directory / "report.html",
         "The multiverse of the paper",
-        _sections(found, pictures, command),
+        [*_sections(found, pictures, command), *inputs_sections(directory)],
         lead=[_lead(found)],
     )
     tell()
@@ -182,7 +183,7 @@ def _sections(
             paragraphs=[
                 "A value is compared with the first value of its reading, in the universes in which"
                 " either was possible. Intervals are of each comparison alone; of the values"
-                " that change nothing, one in twenty has an interval that says otherwise by chance."
+                " that change nothing, about one in twenty has an interval that says otherwise."
                 " marginal_effects.csv has all of them."
             ],
             pictures=[pictures["points"], pictures["factors"]],
@@ -195,10 +196,10 @@ def _sections(
             "The smallest sets of readings",
             paragraphs=[
                 f"The fewest readings with which a claim holds in at least {NEARLY_ALL:.0%} of"
-                f" universes, and surely in more than {SURELY:.0%}, whatever the others are; at"
-                f" least {SUPPORT} universes must meet them. Being the best of very many sets, it"
-                " may still owe something to luck; so it is judged by fresh universes, with other"
-                " layouts and other lives."
+                f" universes here, and by its interval in more than {SURELY:.0%}, the others being"
+                f" what they may; at least {SUPPORT} universes must meet them. Being the best of"
+                " very many sets, it may still owe something to chance; so it is judged by fresh"
+                " universes, with other layouts and other lives."
             ],
             tables=[smallest_table(found)],
         ),

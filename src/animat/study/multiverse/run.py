@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import pyarrow as pa
 
+from animat.errors import Error
 from animat.progress import Telling
 from animat.report.multiverse.cap import cap_effects
 from animat.report.multiverse.interactions import strongest_interactions
@@ -50,7 +51,7 @@ class Size(NamedTuple):
     late: int = LATE
 
 
-class InterruptedStudyError(Exception):
+class InterruptedStudyError(Error):
     """A run was ended before all lives were finished; the same command goes on with it."""
 
 
@@ -150,7 +151,7 @@ def _lived(
         tell(f"{stage}, {task[0].lower()}{task[1:]}", done, total, note)
 
     if not run(plan, directory, workers, tell_stage).complete:
-        raise InterruptedStudyError(directory)
+        raise InterruptedStudyError(str(directory))
     total = len(plan.cases) // 4
     tell_stage("Universes judged", 0, total)
     return judge(

@@ -61,8 +61,8 @@ def interactions_tables(found: Multiverse) -> list[TableBlock]:
             ("Of", "Effect of", "Depends on", "Without it", "With it", "Interaction"),
             rows,
             "Effects in points of the share that holds, or as factors on a ratio. Intervals are"
-            " simultaneous over all pairs of values. Only interactions that are surely there are"
-            " shown, the ten surest of each claim and effect.",
+            " simultaneous over all pairs of values. Only interactions whose interval excludes"
+            " none at all are shown, the ten clearest of each claim and effect.",
         )
     ]
     if found.foretold is None:

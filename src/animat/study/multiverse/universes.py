@@ -19,6 +19,7 @@ from animat.report.multiverse.universes import CELLS
 from animat.settings import SettingsError
 from animat.study.design.factors import Range, Scalar
 from animat.study.design.study import Study
+from animat.study.page.words import word
 
 CELL = "cell"
 
@@ -84,6 +85,8 @@ def readings_of(study: Study) -> tuple[Reading, ...]:
     }
     if not factors:
         raise SettingsError(f"{study.name}: has no reading: no factor but {CELL}")
+    if "steps" in factors:
+        raise SettingsError(f"{study.name}: steps is no reading; all universes need one cap")
     return tuple(
         Reading(name, factor, values)
         for name, (factor, values) in zip(_names(factors), factors.items(), strict=True)
@@ -127,7 +130,7 @@ def label(value: Scalar) -> str:
     """Return a value in words: true, 0.2, clamp."""
     if isinstance(value, bool):
         return str(value).lower()
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return word(value) if isinstance(value, float) else str(value)
 
 
 def _names(factors: Mapping[str, Any]) -> Iterator[str]:

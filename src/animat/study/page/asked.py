@@ -27,7 +27,7 @@ def asked_section(study: Study, cases: Sequence[Case]) -> Section:
     """Return what was asked; the file itself stands at the end of the page."""
     return Section(
         "What was asked",
-        [_size(study, cases), _luck(study), *_teacher(cases), *_records(study)],
+        [_size(study, cases), _pairing(study), *_teacher(cases), *_records(study)],
         items=[*_factors(study), *_left_out(study)],
         pictures=_worlds(cases),
     )
@@ -59,13 +59,16 @@ def _size(study: Study, cases: Sequence[Case]) -> str:
     )
 
 
-def _luck(study: Study) -> str:
+def _pairing(study: Study) -> str:
     if study.paired:
         return (
-            "Paired: life i of every case starts in the same pose and meets the same luck, so that"
-            " what differs between cases is not due to luck."
+            "Paired (common random numbers): life i of every case draws from the same random"
+            " streams, and starts in the same pose wherever its world allows it. So cases can be"
+            " compared life by life and with less noise; but lives diverge once they act"
+            " differently, and all cases share one draw of the streams. How much of a difference"
+            " may still be chance, its interval says."
         )
-    return "Not paired: every case has lives of its own, with a luck of their own."
+    return "Not paired: every case has lives of its own, with random numbers of their own."
 
 
 def _teacher(cases: Sequence[Case]) -> list[str]:

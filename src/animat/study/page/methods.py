@@ -127,7 +127,7 @@ def _variable(name: str, variables: Sequence[Variable]) -> str:
     return (
         f"{name} (law {of(lambda v: str(v.law))}, rate {of(lambda v: v.rate)} per step, set point"
         f" {of(lambda v: v.set_point)}, at birth {of(lambda v: v.start)}, zone"
-        f" {of(lambda v: f'[{v.low:g}, {v.high:g}]')}"
+        f" {of(lambda v: f'[{word(v.low)}, {word(v.high)}]')}"
         + ("" if margin == "0" else f", lethal margin {margin}")
         + ("" if all(v.lethal for v in variables) else ", not lethal in all cases")
         + ")"

@@ -19,6 +19,7 @@ from animat.settings import SettingsError, nearest
 from animat.study.design.design import Case, cases
 from animat.study.page.asked import asked_section
 from animat.study.page.how_run import how_run_section, notices
+from animat.study.page.inputs import inputs_sections
 from animat.study.page.methods import model_words, representatives
 from animat.study.reproduction.readings import readings
 from animat.study.store.results import Progress, Results
@@ -55,6 +56,7 @@ def write_report(
     found = _found(results, lives, by)
     tell("Report", 1, 3)
     short = in_short(found) if found else [NOTHING_YET]
+    inputs = inputs_sections(results.directory)
     sections = [
         asked_section(results.study, laid_out),
         how_run_section(results, progress, failed),
@@ -64,9 +66,13 @@ def write_report(
         _readings_section(laid_out),
         Section(
             "The study file",
-            ["With every setting written out; animat run makes the same lives of it again."],
+            [
+                "With every setting written out. The same engine makes the same lives of it again"
+                f" (animat run){', given the files below' if inputs else ''}."
+            ],
             code=results.text,
         ),
+        *inputs,
     ]
     told = notices(progress, failed)
     write_page(path, f"Study: {results.study.name}", sections, lead=short, notices=told)

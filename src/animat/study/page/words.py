@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from animat.report.numerals import numerals
+
 LISTED_AT_MOST = 8
 """More values than this are not listed."""
 
 
 def word(value: Any) -> str:
-    """Return a value as a reader would write it."""
+    """Return a value as a reader would write it, a number with all its digits."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        return f"{value:.6g}"
+        return repr(value).removesuffix(".0")
     return f"{value:,}" if isinstance(value, int) else str(value)
 
 
@@ -23,12 +25,14 @@ def words(values: Iterable[Any], unit: str = "") -> str:
     distinct = list(dict.fromkeys(values))
     unit = f" {unit}" if unit else ""
     numbers = [v for v in distinct if isinstance(v, int | float) and not isinstance(v, bool)]
-    if len(distinct) > LISTED_AT_MOST:
-        if len(numbers) == len(distinct):
-            return f"{word(min(numbers))} to {word(max(numbers))}{unit}"
-        return f"one of {len(distinct)} values"
     if len(numbers) == len(distinct):
-        distinct = sorted(distinct)
+        numbers = sorted(numbers)
+        ends = numbers if len(numbers) <= LISTED_AT_MOST else [numbers[0], numbers[-1]]
+        said = numerals(ends)
+        told = [said[v] if isinstance(v, float) else word(v) for v in ends]
+        return listed(told, "or" if ends is numbers else "to") + unit
+    if len(distinct) > LISTED_AT_MOST:
+        return f"one of {len(distinct)} values"
     return listed([word(value) for value in distinct], "or") + unit
 
 

@@ -25,6 +25,7 @@ from animat.report.figures.survival import survival_figure
 from animat.report.figures.worlds import worlds_figure
 from animat.report.lives import cells
 from animat.report.survival import kaplan_meier
+from animat.study.page.inputs import inputs_sections
 from animat.study.provenance import provenance
 from animat.study.reproduction.readings import CALIBRATED, ERRATA, readings
 from animat.study.reproduction.reproduction import PAPERS_LIVES, Reproduction
@@ -91,7 +92,7 @@ def publish(result: Reproduction, directory: Path, tell: Callable[[], None]) -> 
     page.write_page(
         directory / "report.html",
         "Motivation-driven learning of object affordances: a reproduction",
-        _sections(result, pictures, made),
+        [*_sections(result, pictures, made), *inputs_sections(directory)],
         lead=_lead(result),
     )
     tell()
@@ -206,8 +207,8 @@ def _sections(
         page.Section(
             "How this was made",
             paragraphs=[
-                "settings.toml and how_made.json beside this page hold all of it, experiment1 and"
-                " experiment2 the results of both studies;"
+                "settings.toml and how_made.json beside this page say how, experiment1 and"
+                " experiment2 hold the results of both studies;"
                 f" animat reproduce --settings settings.toml --seed {result.seed}"
                 f" --lives {result.size.lives} --seeds {result.size.robots}"
                 f" --steps {result.size.steps} makes the same numbers again."

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from animat.files import RunError
 from animat.life.life import check as check_life
 from animat.life.setting import LifeError
 from animat.progress import Telling
@@ -141,7 +142,8 @@ def reproduce(
     Raises:
         SettingsError: what cannot be lived, or a directory that holds experiments of other
             settings, or cannot be written.
-        RunError: another process runs them there, or it cannot be written any more.
+        RunError: another process runs them there, it cannot be written any more, or all lives of
+            a case failed.
         KeyboardInterrupt: the run was ended before its time.
     """
     check(settings, seed, size)
@@ -149,6 +151,8 @@ def reproduce(
     for study in studies(settings, seed, size):
         plan = plan_of(study.to_toml(), check_functions)
         lived.append(_lived(plan, directory / study.name, lived, tell, anew))
+    for results in lived:
+        _check_some_lived(results)
     robots = learnt(lived[0])
     tell("Statistics", 0, 3)
     lives = _lives(lived[1])
@@ -191,6 +195,15 @@ def _lived(
         if not run(plan, directory, workers, told, lenders).complete:
             raise KeyboardInterrupt
     return Results(directory)
+
+
+def _check_some_lived(results: Results) -> None:
+    """Raise RunError where all lives of a case failed, so that there is nothing to judge."""
+    lives = results.lives(["case", "error"])
+    there = lives.filter(pc.field("error").is_null())["case"].unique()
+    if len(there) < results.cases.num_rows:
+        (first,) = results.failures(1)
+        raise RunError(f"{results.study.name}: all lives of a case failed, such as {first}")
 
 
 def _changed(study: Study, changes: dict[str, Any]) -> Study:

@@ -13,10 +13,10 @@ from pathlib import Path
 from threading import Event, Lock
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from animat.files import RunError
 from animat.life.engine import ENGINE
 from animat.study.living.numbering import Part
 from animat.study.provenance import versions
-from animat.study.store.lock import RunError
 
 if TYPE_CHECKING:
     from animat.study.living.parts import Made, Networks

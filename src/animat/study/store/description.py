@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import os
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any
@@ -19,7 +20,7 @@ from pydantic import BaseModel, Field, PositiveInt
 
 from animat.files import sync_directory, write_whole
 from animat.life.engine import ENGINE
-from animat.settings import SettingsError
+from animat.settings import SettingsError, opened
 from animat.study.living.columns import schema
 from animat.study.living.numbering import KINDS, Kind
 from animat.study.living.plan import Plan
@@ -34,8 +35,8 @@ INPUTS = "inputs"
 FOLDERS = ("lives", "teachers", "curves", "traces", INPUTS)
 
 OTHER_LIVES = (
-    "its lives are not those that are lived now of the same study: animat has changed, or what a"
-    " function of your own calls"
+    "its lives are not those that are lived now of the same study: animat or the version of Python"
+    " has changed, or what a custom function computes by"
 )
 WRITTEN_ANEW = "animat run with the same study writes it anew"
 
@@ -72,6 +73,8 @@ def read_manifest(directory: Path) -> dict[str, Any]:
     """Return the manifest of a results directory. Raises SettingsError where there is none."""
     path = directory / MANIFEST
     try:
+        if path.exists() and not path.is_file():
+            raise OSError  # reading it might never end
         content = path.read_bytes()
         _Manifest.model_validate_json(content)
         return json.loads(content)
@@ -88,7 +91,8 @@ def read_text(directory: Path, manifest: dict[str, Any]) -> str:
     """Return the text of the study. Raises SettingsError where it is not what it was."""
     path = directory / STUDY
     try:
-        text = path.read_text("utf-8")
+        with opened(path, "study file") as file:
+            text = file.read().decode("utf-8")
     except (OSError, ValueError):
         raise _unreadable(path) from None
     if text_hash(text) != manifest["hash"]:
@@ -100,9 +104,10 @@ def read_cases(directory: Path) -> pa.Table:
     """Return the table of cases. Raises SettingsError where it cannot be read."""
     path = directory / CASES
     try:
-        with path.open("rb") as file:
+        with opened(path, "table") as file:
             cases = pq.read_table(file)
-    except (OSError, pa.ArrowException):
+        cases.validate(full=True)
+    except (OSError, ValueError, pa.ArrowException):
         raise _unreadable(path) from None
     if not {"case", "identity", "same_as"} <= set(cases.column_names):
         raise _unreadable(path)
@@ -116,9 +121,9 @@ def read_columns(directory: Path, kind: Kind) -> pa.Schema:
     """
     path = directory / kind / COLUMNS
     try:
-        with path.open("rb") as file:
+        with opened(path, "table") as file:
             return pq.read_schema(file)
-    except (OSError, pa.ArrowException):
+    except (OSError, ValueError, pa.ArrowException):
         if kind == "teachers" and not path.parent.exists():
             return pa.schema([])
         raise _unreadable(path) from None
@@ -184,17 +189,31 @@ def differences_from(directory: Path, plan: Plan) -> list[str]:
 def changed_inputs(directory: Path, manifest: dict[str, Any]) -> list[str]:
     """Return a line for every file of the user's that is not any more as it was."""
     lines = []
-    for path, copy in manifest["inputs"].items():
+    for path, content in manifest["inputs"].items():
         there = Path(path).is_file()
-        if not there or name_of_copy(Path(path)) != copy:
+        if not there or file_hash(Path(path)) != content:
             what = "has changed since" if there else "is not there any more"
-            lines.append(f"{path} {what}; as it was it is in {directory / INPUTS}")
+            where = "" if Path(path).is_absolute() else f" (looked for in {Path.cwd()})"
+            lines.append(f"{path} {what}{where}; as it was it is in {directory / INPUTS}")
     return lines
 
 
-def name_of_copy(path: Path, name: str | None = None) -> str:
-    """Return what the copy of a file is called: by its content, and its name unless given."""
-    return f"{hashlib.sha256(path.read_bytes()).hexdigest()[:8]}-{name or path.name}"
+def file_hash(path: Path) -> str:
+    """Return the hash of what a file holds."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def place_of_copy(path: str) -> Path:
+    """Return where in a results directory the copy of a file of the user's is.
+
+    Files keep their places to one another, so that a study can be run again in `inputs/`: those
+    named from the folder that the program ran in as they are, the others below `outside/`.
+    """
+    plain = Path(os.path.normpath(path))
+    if plain.is_absolute() or plain.parts[0] == "..":
+        plain = Path(os.path.abspath(plain))  # noqa: PTH100
+        plain = Path("outside", *plain.parts[1:])
+    return Path(INPUTS) / plain
 
 
 def text_hash(text: str) -> str:
@@ -231,8 +250,10 @@ def _describe(directory: Path, plan: Plan) -> None:
     for folder in _folders(plan):
         (directory / folder).mkdir(exist_ok=True)
     sync_directory(directory)
-    for path, copy in _inputs(plan).items():
-        _see_to_it(directory / INPUTS / copy, Path(path).read_bytes())
+    for path in sorted(plan.inputs):
+        copy = directory / place_of_copy(path)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        _see_to_it(copy, Path(path).read_bytes())
     _see_to_it(directory / STUDY, plan.text.encode())
     cases = io.BytesIO()
     pq.write_table(plan.case_table(), cases)
@@ -257,8 +278,8 @@ def _folders(plan: Plan) -> list[str]:
 
 
 def _inputs(plan: Plan) -> dict[str, str]:
-    """Return the files a study draws on beside its own, each with the name of its copy."""
-    return {path: name_of_copy(Path(path)) for path in sorted(plan.inputs)}
+    """Return the files a study draws on beside its own, each with the hash of what it holds."""
+    return {path: file_hash(Path(path)) for path in sorted(plan.inputs)}
 
 
 def _see_to_it(path: Path, content: bytes) -> None:

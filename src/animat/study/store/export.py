@@ -8,18 +8,15 @@ memory.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
-import pyarrow.csv as pc_csv
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from animat.files import check_writable, whole
+from animat.life.table_files import write_tables
 from animat.settings import SettingsError
 from animat.study.store.results import Results
 
@@ -40,34 +37,7 @@ def export(results: Results, kind: str, path: Path, *, force: bool = False) -> i
     with whole(path) as partial:
         if kind == "nc":
             return _write_netcdf(results, partial)
-        return _write_rows(results.batches(), partial, plain=kind == "csv")
-
-
-def _write_rows(batches: Iterator[pa.Table], path: Path, *, plain: bool) -> int:
-    first = next(batches)
-    rows = 0
-    if plain:
-        writer: Any = pc_csv.CSVWriter(path, _plain(first).schema)
-    else:
-        writer = pq.ParquetWriter(path, first.schema, compression="zstd")
-    with writer:
-        for table in batches:
-            writer.write_table(_plain(table) if plain else table)
-            rows += table.num_rows
-    return rows
-
-
-def _plain(table: pa.Table) -> pa.Table:
-    """Return a table of numbers and texts: lists as numbers joined by blanks."""
-    for n, column in enumerate(table.schema):
-        values = table.column(n)
-        if pa.types.is_dictionary(column.type):
-            values = values.cast(column.type.value_type)
-        elif pa.types.is_list(column.type):
-            texts = values.cast(pa.list_(pa.string()))
-            values = pc.call_function("binary_join", [texts, pa.scalar(" ")])
-        table = table.set_column(n, column.name, values)
-    return table
+        return write_tables(results.batches(), partial, csv=kind == "csv")
 
 
 def _write_netcdf(results: Results, path: Path) -> int:

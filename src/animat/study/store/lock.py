@@ -18,6 +18,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
 
+from animat.files import RunError
+
 PATIENCE = 1.0
 """Seconds to wait for one who only looks, as `holder` does for a moment."""
 
@@ -37,10 +39,6 @@ class Holder(NamedTuple):
     def __str__(self) -> str:
         """Return who it is in words."""
         return f"process {self.pid} on {self.host}, since {self.since}"
-
-
-class RunError(RuntimeError):
-    """Something that stops a run and is no mistake of its user; `str` says in a line what."""
 
 
 class HeldError(RunError):
@@ -73,16 +71,21 @@ def hold(lock: Path) -> Iterator[Holder | None]:
 
 
 def holder(lock: Path) -> tuple[Holder | None, bool]:
-    """Return who holds a directory and True, or who held it last and died, or None, and False."""
+    """Return who holds a directory and True, or who held it last and died, or None, and False.
+
+    A lock that cannot be looked at, or is no file, is held by nobody.
+    """
     try:
-        file = os.open(lock, os.O_RDONLY)
-    except (FileNotFoundError, IsADirectoryError):
+        file = os.open(lock, os.O_RDONLY | os.O_NONBLOCK)
+    except OSError:
         return None, False
     try:
         try:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
         except BlockingIOError:
             return _words(file), True
+        except OSError:
+            return None, False
         return _words(file), False
     finally:
         os.close(file)
@@ -105,7 +108,7 @@ def _words(file: int) -> Holder | None:
     """Return the holder a lock file names; None for none, and for words that are torn."""
     try:
         return Holder(**json.loads(os.pread(file, LONGEST, 0)))
-    except (ValueError, TypeError, RecursionError):
+    except (OSError, ValueError, TypeError, RecursionError):
         return None
 
 

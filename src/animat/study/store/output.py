@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from animat.files import unwritable
 from animat.settings import SettingsError
 from animat.study.store.lock import hold
 
@@ -28,6 +29,7 @@ def fresh_directory(out: Path, *, force: bool) -> Iterator[Path]:
     Raises:
         SettingsError: `out` is there already and not `force`, is no result, or cannot be made.
         HeldError: another process fills it.
+        RunError: the disk is full, or fails.
     """
     try:
         # Where a link leads to, so that the link stays one.
@@ -37,7 +39,7 @@ def fresh_directory(out: Path, *, force: bool) -> Iterator[Path]:
         new = [one for one in (partial, *partial.parents) if not one.exists()]
         partial.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise SettingsError(f"{out}: cannot be made: {error.strerror}") from None
+        raise unwritable(out, error) from None
     lock = partial / LOCK
     try:
         with hold(lock):
@@ -45,7 +47,7 @@ def fresh_directory(out: Path, *, force: bool) -> Iterator[Path]:
             lock.unlink()
             _put(partial, place, force)
     except OSError as error:
-        raise SettingsError(f"{out}: cannot be written: {error.strerror or error}") from None
+        raise unwritable(out, error) from None
     finally:
         _leave_nothing_empty(lock, new)
 

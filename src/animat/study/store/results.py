@@ -8,8 +8,7 @@ A row is a life of a case. Cases whose lives are the same lives were lived once;
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
@@ -20,12 +19,18 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.dataset as ds
 import pyarrow.parquet as pq
+from pydantic import ValidationError
 
-from animat.settings import SettingsError, nearest, validated
+from animat import arguments
+from animat.arguments import MOST_63, instance, sequence, whole
+from animat.life.table_files import to_pandas
+from animat.mistakes import brief
+from animat.settings import SettingsError, explain, nearest, parse_text, validated
 from animat.study.design.study import Study
 from animat.study.living.numbering import KINDS, Kind, Numbering, Part
 from animat.study.living.seal import Seal, seal_of
 from animat.study.store.description import read_cases, read_columns, read_manifest, read_text
+from animat.study.store.intact import Intact
 from animat.study.store.tally import Tally
 
 if TYPE_CHECKING:
@@ -48,7 +53,7 @@ def open(directory: Path | str) -> Results:  # noqa: A001
 
     Raises SettingsError where there are none.
     """
-    return Results(Path(directory))
+    return Results(arguments.path("directory", directory))
 
 
 class Results:
@@ -67,7 +72,11 @@ class Results:
     @cached_property
     def study(self) -> Study:
         """The study, every setting written out. Raises SettingsError for one that has changed."""
-        return validated(tomllib.loads(self.text), Study)
+        where = str(self.directory)
+        try:
+            return validated(parse_text(self.text, where), Study)
+        except ValidationError as error:
+            raise explain(error, Study, where) from None
 
     @cached_property
     def text(self) -> str:
@@ -106,14 +115,26 @@ class Results:
                 tally.add(part, seal.steps, seal.failed)
         return tally
 
+    def unusable(self) -> list[str]:
+        """Return a line for every part that its file does not hold, without reading its values."""
+        parts = [part for kind in KINDS for part in self._there(kind)]
+        files = [(self.directory / part.file, part) for part in parts]
+        try:
+            found = [self._intact.wrong(file, part, unread=True) for file, part in files]
+        except SettingsError as error:  # the study file has changed
+            return list(error.problems)
+        return [*filter(None, found)]
+
     def dataset(self, kind: Kind = "lives") -> ds.Dataset:
         """Return the parts that are finished as a dataset, which reads only what is asked of it.
 
-        Its lives stand under the case they were lived for, without factors.
+        Its lives stand under the case they were lived for, without factors. Raises SettingsError
+        where a part is not as it was written, or not where it belongs.
         """
-        columns = read_columns(self.directory, kind)
-        files = [str(self.directory / part.file) for part in self._finished(kind)]
-        return ds.dataset(files, schema=columns, format="parquet")
+        columns = read_columns(self.directory, _known(kind))
+        files = {self.directory / part.file: part for part in self._there(kind)}
+        self._intact.check(files, columns)
+        return ds.dataset([*map(str, files)], schema=columns, format="parquet")
 
     def lives(
         self, columns: Sequence[str] | None = None, where: pc.Expression | None = None
@@ -124,6 +145,8 @@ class Results:
         `pc.field("lifespan") > 1000`. Raises SettingsError for a column there is not.
         """
         wanted = self._checked(columns)
+        if where is not None:
+            instance("where", where, pc.Expression)
         needed = None if where is not None else {*wanted, "case", "life"}
         batches = [
             batch if where is None else batch.filter(where) for batch in self.batches(needed)
@@ -137,6 +160,9 @@ class Results:
         They come in the order in which they are numbered. `columns` must have `case`.
         """
         dataset = self.dataset()
+        if columns is not None:
+            instance("columns", columns, Set)
+            self._checked(sorted(columns))
         stored = [n for n in dataset.schema.names if columns is None or n in columns]
         factors = [n for n in self.factors if columns is None or n in columns]
         yield self._with_factors(dataset.schema.empty_table().select(stored), factors)
@@ -150,7 +176,7 @@ class Results:
 
     def to_pandas(self) -> pd.DataFrame:
         """Return all lives as a pandas table; needs pandas (`pip install animat[pandas]`)."""
-        return self.lives().to_pandas()
+        return to_pandas(self.lives())
 
     def teachers(self) -> pa.Table:
         """Return the robots that learnt: `identity` of their class, `robot`, weights, likelihoods.
@@ -162,7 +188,7 @@ class Results:
 
     def curves(self, kind: Kind = "lives") -> pa.Table:
         """Return the learning curves of lives, or of the robots that teach; empty without any."""
-        return self._beside("curves", kind, kind)
+        return self._beside("curves", _known(kind), kind)
 
     def traces(self) -> pa.Table:
         """Return the traces of the lives that were recorded; empty without any."""
@@ -170,6 +196,7 @@ class Results:
 
     def failures(self, count: int) -> list[str]:
         """Return the first of the lives that failed, in words, at most `count` of them."""
+        count = whole("count", count, 0, MOST_63)
         with _whole(self.directory):
             failed = self.dataset().head(count, filter=pc.field("error").is_valid())
         told = []
@@ -181,22 +208,36 @@ class Results:
 
     def _finished(self, kind: Kind) -> dict[Part, Seal]:
         """Return the parts that are there, with their seals; what is torn or no part is not."""
-        numbering = self.numbering[kind]
         found = {}
-        for path in sorted((self.directory / kind).glob("part-*.parquet")):
-            number = path.stem.removeprefix("part-")
-            part = Part(kind, int(number) if number.isdecimal() else numbering.parts)
-            if part.number >= numbering.parts or path != self.directory / part.file:
-                continue
-            seal = seal_of(path)
-            if seal is not None and seal.rows == numbering.rows(part.number):
+        for part in self._there(kind):
+            seal = seal_of(self.directory / part.file)
+            if seal is not None and seal.rows == self.numbering[kind].rows(part.number):
                 found[part] = seal
         return found
 
+    def _there(self, kind: Kind) -> Iterator[Part]:
+        """Yield the parts that have a file, whatever is in it."""
+        numbering = self.numbering[kind]
+        for path in sorted((self.directory / kind).glob("part-*.parquet")):
+            number = path.stem.removeprefix("part-")
+            part = Part(kind, int(number) if number.isdecimal() else numbering.parts)
+            if part.number < numbering.parts and path == self.directory / part.file:
+                yield part
+
+    @cached_property
+    def _intact(self) -> Intact:
+        engine = self.manifest["engine"]
+        return Intact(self.directory, engine, self.study, self.cases, self.numbering)
+
     def _beside(self, folder: str, kind: Kind, prefix: str) -> pa.Table:
         """Return what is kept beside the lives that are finished."""
-        names = (f"{prefix}-{part.number:06d}.parquet" for part in self._finished(kind))
-        files = [path for name in names if (path := self.directory / folder / name).exists()]
+        own = {f"{prefix}-{part.number:06d}.parquet": part for part in self._there(kind)}
+        files = {
+            path: part
+            for name, part in own.items()
+            if (path := self.directory / folder / name).exists()
+        }
+        self._intact.check(files)
         with _whole(self.directory):
             tables = [pq.read_table(file) for file in files]
         if not tables:
@@ -206,7 +247,7 @@ class Results:
     def _checked(self, columns: Sequence[str] | None) -> list[str]:
         known = ["case", *self.factors]
         known += [name for name in self.dataset().schema.names if name != "case"]
-        for name in columns or ():
+        for name in sequence("columns", columns or (), str):
             if name not in known:
                 raise SettingsError(f'lives have no column "{name}"{nearest(name, known)}')
         return known if columns is None else list(columns)
@@ -237,6 +278,12 @@ class Results:
             columns[name] = coded.take(pa.array(cases))
         rest = {name: lives[name] for name in lives.column_names if name != "case"}
         return pa.table({**columns, **rest})
+
+
+def _known(kind: Kind) -> Kind:
+    if kind not in KINDS:
+        raise SettingsError(f"kind = {brief(kind)}; allowed are {', '.join(KINDS)}")
+    return kind
 
 
 @contextmanager

@@ -28,6 +28,7 @@ def status(results: Results) -> list[str]:
         lines.append(f"{lives.failed:,} lives failed")
     if robots.failed:
         lines.append(f"{robots.failed:,} robots failed to learn")
+    lines += results.unusable()
     return [*lines, _who(results, Pace(tally, results.steps_to_learn, *_speed(results.directory)))]
 
 
@@ -42,10 +43,10 @@ def _who(results: Results, pace: Pace) -> str:
 
 def _speed(directory: Path) -> tuple[int, float]:
     """Return the steps lived since the first part of the last run, and the seconds it took."""
-    parts = _parts_of_last_run(entries(directory / LOG))
     try:
+        parts = _parts_of_last_run(entries(directory / LOG))
         return sum(p["steps"] for p in parts[1:]), parts[-1]["seconds"] - parts[0]["seconds"]
-    except (IndexError, KeyError, TypeError):
+    except (OSError, IndexError, KeyError, TypeError):
         # Nothing is taken down yet, or somebody else has written into the log.
         return 0, 0.0
 

@@ -16,15 +16,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from animat.files import sync_directory, write_whole
+from animat.files import RunError, sync_directory, unwritable, write_whole
 from animat.settings import SettingsError
 from animat.study.living.numbering import Part
 from animat.study.living.parts import Made, file_names, part_identity
 from animat.study.living.plan import Plan
-from animat.study.living.seal import Seal, seal_of
+from animat.study.living.seal import OTHERS, Seal, seal_of
 from animat.study.living.teachers import read_networks
 from animat.study.store.description import CASES, FOLDERS, MANIFEST, STUDY, begin
-from animat.study.store.lock import Holder, RunError, hold
+from animat.study.store.lock import Holder, hold
 from animat.study.store.log import Log, logging_to
 
 LOCK, LOG = "lock", "log.jsonl"
@@ -58,10 +58,12 @@ class Store:
             seal = seal_of(path)
             if seal is None:
                 if path.exists():
+                    if not path.is_file():
+                        raise SettingsError(f"{path}: is no file; take it away")
                     self.note("torn", file=name)
                 return None
             if seal.identity != wanted:
-                raise SettingsError(f"{path}: holds lives of another study; take it away")
+                raise SettingsError(f"{path}: {OTHERS}")
         return seal
 
     def put(self, part: Part, made: Made) -> None:
@@ -89,6 +91,7 @@ def open_store(directory: Path, plan: Plan) -> Iterator[Store]:
     Raises:
         SettingsError: it holds something else, or cannot be written.
         HeldError: another process holds it.
+        RunError: the disk is full, or fails.
     """
     with ExitStack() as stack:
         try:
@@ -99,8 +102,7 @@ def open_store(directory: Path, plan: Plan) -> Iterator[Store]:
             _clear(directory)
             begin(directory, plan)
         except OSError as error:
-            where, why = error.filename or directory, error.strerror or error
-            raise SettingsError(f"{where}: cannot be written: {why}") from None
+            raise unwritable(error.filename or directory, error) from None
         yield Store(directory, plan, log, dead)
 
 
@@ -137,10 +139,8 @@ def _kept(path: Path) -> Iterator[None]:
     """Say of what cannot be written that what is finished is kept."""
     try:
         yield
-    except (OSError, SettingsError) as error:
-        what = str(error)
-        if isinstance(error, OSError):
-            what = f"{path}: cannot be written: {error.strerror or error}"
+    except (OSError, SettingsError, RunError) as error:
+        what = unwritable(path, error) if isinstance(error, OSError) else error
         raise StoreError(
             f"{what}; what is finished is kept, and the same command goes on with it"
         ) from None

@@ -27,7 +27,7 @@ from animat.study.living.parts import (
     table_of,
 )
 from animat.study.living.plan import Plan, plan_of
-from animat.study.living.seal import content, content_of, seal_of
+from animat.study.living.seal import content, wrong_with
 from animat.study.living.teachers import read_networks
 from animat.study.store.description import (
     CASES,
@@ -37,7 +37,8 @@ from animat.study.store.description import (
     OTHER_LIVES,
     WRITTEN_ANEW,
     changed_inputs,
-    name_of_copy,
+    file_hash,
+    place_of_copy,
     read_columns,
     read_text,
 )
@@ -45,9 +46,6 @@ from animat.study.store.results import Results
 
 SAMPLE = 64
 """Parts of a kind from which a life is lived again; they lie evenly spread over all there are."""
-
-
-LIVED_AGAIN = "take it away, and animat run with the same study lives it again"
 
 
 class Verified(NamedTuple):
@@ -111,9 +109,9 @@ def _wrong_descriptions(results: Results, plan: Plan) -> Iterator[str]:
             continue
         if plan.numbering[kind].total and not columns.equals(schema(plan, kind)):
             yield f"{directory / kind / COLUMNS}: has other columns than the study; {WRITTEN_ANEW}"
-    for path, copy in results.manifest["inputs"].items():
-        kept = directory / INPUTS / copy
-        if not kept.is_file() or name_of_copy(kept, Path(path).name) != copy:
+    for path, was in results.manifest["inputs"].items():
+        kept = directory / place_of_copy(path)
+        if not kept.is_file() or file_hash(kept) != was:
             yield f"{kept}: is no copy of {path} any more; {WRITTEN_ANEW}"
 
 
@@ -136,17 +134,9 @@ def _read_again(directory: Path, plan: Plan, part: Part) -> list[str] | None:
 
 
 def _wrong(directory: Path, plan: Plan, part: Part) -> Iterator[str]:
-    for name in file_names(plan, part):
-        path = directory / name
-        seal = seal_of(path)
-        if not path.exists():
-            yield f"{path}: is missing"
-        elif seal is None:
-            yield f"{path}: is torn"
-        elif seal.identity != part_identity(plan, part):
-            yield f"{path}: holds other lives than it should; {LIVED_AGAIN}"
-        elif content_of(path) != seal.content:
-            yield f"{path}: has changed since it was written; {LIVED_AGAIN}"
+    identity = part_identity(plan, part)
+    found = (wrong_with(directory / name, identity) for name in file_names(plan, part))
+    yield from filter(None, found)
 
 
 def _taught_by(plan: Plan, part: Part) -> set[Part]:
