@@ -113,4 +113,7 @@ def test_a_function_that_raises_is_told_of(animat, tmp_path, lost):
     said = animat("check", "fails.toml")
     assert said.code == 0
     last = said.out.splitlines()[-1]
-    assert re.fullmatch(r"\d+ of these \d+ lives fail, such as: ValueError: lost, in step 0", last)
+    assert re.fullmatch(
+        r"\d+ of these \d+ lives fail, such as: wander: walk raised ValueError: lost, in step 0",
+        last,
+    )

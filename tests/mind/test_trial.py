@@ -6,13 +6,13 @@ import types
 
 import numpy as np
 import pytest
-from animat.numerics.fingerprint import fingerprint
 
 from animat.life.setting import bring_together
 from animat.mind import trial
 from animat.mind.functions import SIGNATURES, FunctionError, checked_twin, resolve
 from animat.mind.mind import Mind
 from animat.numerics.compiled import compiled
+from animat.numerics.snapshot import lasting_identity
 from animat.world.world import World
 
 LAST = {
@@ -206,7 +206,7 @@ def test_the_twin_that_checks_computes_the_same_under_a_name_of_its_own():
     twin = resolve("estimator", by_helper, check=True)
     assert twin is not function
     assert checked_twin(twin) is twin
-    assert fingerprint(twin) == fingerprint(function)
+    assert lasting_identity(twin) == lasting_identity(function)
     law, other = resolve("law", within), resolve("law", within, check=True)
     for value in (0.0, 0.31, 1.0):
         assert law(value, 0.0, 1.0, 0.1, 0.9) == other(value, 0.0, 1.0, 0.1, 0.9)

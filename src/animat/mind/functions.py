@@ -173,6 +173,9 @@ def _check_signature(role: str, function: Callable[..., Any]) -> None:
 
 def _check_compiles(role: str, dispatcher: Any) -> Any:
     """Return the twin of a custom function that checks every index, compiled for its role."""
+    known = _TWINS.get(dispatcher)
+    if known is not None and ARGUMENTS[role] in known.overloads:
+        return known
     name = dispatcher.__name__
     twins: dict[Any, Any] = {}
     try:

@@ -43,9 +43,10 @@ def checked(function: Any, twins: dict[Any, Any]) -> Any:
     if isinstance(function, InlinedDispatcher):
         twin: Any = inlined(copy, **options)
     else:
-        del options["nopython"]
+        options.pop("nopython", None)
         twin = numba.njit(**options)(copy)
-    twin._set_uuid(f"checked {function._uuid}")
+    original: Any = function
+    twin._set_uuid(f"checked {original._uuid}")
     twins[source] = twin
     return twin
 

@@ -163,7 +163,7 @@ def test_a_life_that_failed_has_its_name_and_its_error_and_no_trace(faults, tmp_
         there = {name for name, value in row.items() if value is not None}
         if row["life"] in failed:
             assert there == named
-            assert row["error"].startswith("ValueError: lost, in step ")
+            assert row["error"].startswith("wander: walk raised ValueError: lost, in step ")
         else:
             assert {"lifespan", "mean_drive", "acts"} <= there
 

@@ -131,4 +131,7 @@ def test_lives_that_fail_are_told_of(tmp_path, turn, lost):
     expected = expect(plan_of(f'steps = 500\n{mind}[record]\nwhat = "all"'))
     assert 0 < len(expected.errors) <= expected.measured_lives
     assert (len(expected.errors) == expected.measured_lives) == (turn == 1)
-    assert all(error.startswith("ValueError: lost, in step") for error in expected.errors)
+    assert all(
+        error.startswith("wander: walk raised ValueError: lost, in step")
+        for error in expected.errors
+    )
