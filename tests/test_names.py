@@ -86,9 +86,9 @@ def test_a_column_of_a_trace_is_no_variable_and_no_drive(name):
 
 
 def test_both_sides_of_a_collision_are_named():
-    with pytest.raises(SettingsError, match='^drive "nutrition" is called like a variable$'):
+    with pytest.raises(SettingsError, match=r'^drive "nutrition" is called like a variable$'):
         mind_of(["v"], ["nutrition"], ["b"])
-    with pytest.raises(SettingsError, match='^behaviour "leave" is called like one of the modes'):
+    with pytest.raises(SettingsError, match=r'^behaviour "leave" is called like one of the modes'):
         mind_of(["v"], ["d"], ["leave"])
     with pytest.raises(LifeError) as caught:
         columns(mind_of(["v"], ["d"], ["eat", "eat_a"]), world_of(["a_b", "b"]))
