@@ -176,7 +176,7 @@ def test_minds_and_worlds_of_several_kinds_have_the_same_columns(faults, tmp_pat
         'name = "kinds"\nlives = 4\nsteps = 20\nmeasures = ["likelihoods"]\n'
         '[mind]\nagent = "LEARNING"\n[mind.behaviours]\n'
         'feed = { serves = "hunger", needs = "grasp" }\n'
-        'eat = false\n'
+        "eat = false\n"
         f'[design.grid]\n"world.layout" = ["abundant", "{tmp_path}/other.toml"]\n'
     )
     made = live_part(plan.text, Part("lives", 0), {})
