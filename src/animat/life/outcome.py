@@ -50,9 +50,10 @@ def suffer(state, mind, effects, functions):
         state.changes_after[v] = state.changes[v] + effects[v]
     if mind.learns:
         state.asked = failure.DRIVES
-        if not drives.raise_drives(
+        drives.raise_drives(
             state.aftermath, state.changes_after, mind, state.drives_after, functions.drives
-        ):
+        )
+        if mind.error == drives.CUSTOM_DRIVES and not drives.all_finite(state.drives_after):
             failure.fail(state, failure.DRIVES, 0.0, 0.0)
         acting = mind.serves[state.behaviour]
         variation = state.drives_after[acting] - state.drives[acting]

@@ -13,6 +13,8 @@ a selector. Every function changes `state`, the record of `animat.life.state`, i
 
 from __future__ import annotations
 
+import math
+
 from animat.life import failure
 from animat.life.encounter import abandon, change_mode, forget_lost, look_around
 from animat.life.outcome import finish, perish
@@ -69,19 +71,30 @@ def sense(state, robot, raster, present, seed, life):
 def metabolise(state, mind, functions):
     """Let the variables drift for one step and the drives follow them; end a life that must."""
     state.asked = failure.LAW
-    if not homeostasis.metabolise(state.values, mind, functions.law):
-        failure.fail(state, failure.LAW, 0.0, 0.0)
+    homeostasis.metabolise(state.values, mind, functions.law)
     for v in range(len(state.values)):
         state.changes[v] = state.values[v] - state.previous[v]
         state.previous[v] = state.values[v]
     state.asked = failure.DRIVES
-    if not drives.raise_drives(state.values, state.changes, mind, state.drives, functions.drives):
-        failure.fail(state, failure.DRIVES, 0.0, 0.0)
+    drives.raise_drives(state.values, state.changes, mind, state.drives, functions.drives)
     total = 0.0
     for drive in state.drives:
         total += drive
     state.drive_sum += total / len(state.drives)
+    # A value that is not a number leaves no built-in drive a number.
+    if mind.error == drives.CUSTOM_DRIVES or not math.isfinite(total):
+        check_needs(state, mind)
     perish(state, mind, homeostasis.METABOLISM)
+
+
+@compiled
+def check_needs(state, mind):
+    """Fail a life in which a custom law or drive function gave what is not finite."""
+    for v in range(len(state.values)):
+        if mind.law[v] == homeostasis.CUSTOM_LAW and not math.isfinite(state.values[v]):
+            failure.fail(state, failure.LAW, 0.0, 0.0)
+    if mind.error == drives.CUSTOM_DRIVES and not drives.all_finite(state.drives):
+        failure.fail(state, failure.DRIVES, 0.0, 0.0)
 
 
 @compiled

@@ -56,7 +56,6 @@ def raise_drives(values, changes, mind, out, custom):
     """Fill `out` [D] with the drives, by the mind's drive function.
 
     `changes` [V] is what the values have changed by since the last step: dV/dt times one step.
-    Return whether all that a custom function left in `out` is finite.
     """
     if mind.error == SIGNED:
         signed(values, changes, mind.set_point, mind.sense, mind.a, mind.b, out)
@@ -66,8 +65,6 @@ def raise_drives(values, changes, mind, out, custom):
         absolute(values, changes, mind.set_point, mind.sense, mind.a, mind.b, out)
     else:
         custom(values, changes, mind.set_point, mind.sense, mind.a, mind.b, out)
-        return all_finite(out)
-    return True
 
 
 @compiled

@@ -52,7 +52,10 @@ def linear_rise(value, low, high, rate, factor):
 
 @compiled
 def obey(law, value, low, high, rate, factor, custom):
-    """Apply the law of the given code; `custom` is the user's own function."""
+    """Apply the law of the given code; `custom` is the user's own function.
+
+    What a custom law returns is not a number where it is not finite: no bound holds that back.
+    """
     if law == DECAY:
         return decay(value, low, high, rate, factor)
     if law == GROWTH:
@@ -63,16 +66,13 @@ def obey(law, value, low, high, rate, factor, custom):
         return linear_fall(value, low, high, rate, factor)
     if law == LINEAR_RISE:
         return linear_rise(value, low, high, rate, factor)
-    return custom(value, low, high, rate, factor)
+    value = custom(value, low, high, rate, factor)
+    return value if math.isfinite(value) else math.nan
 
 
 @compiled
 def metabolise(values, mind, custom):
-    """Let every variable [V] follow its law for one step, in place.
-
-    Return whether all that a custom law returned is finite.
-    """
-    finite = True
+    """Let every variable [V] follow its law for one step, in place."""
     for v in range(len(values)):
         value = obey(
             mind.law[v],
@@ -83,10 +83,7 @@ def metabolise(values, mind, custom):
             mind.factor[v],
             custom,
         )
-        if mind.law[v] == CUSTOM_LAW and not math.isfinite(value):
-            finite = False
         values[v] = min(max(value, mind.drift_floor[v]), mind.drift_ceiling[v])
-    return finite
 
 
 @compiled
