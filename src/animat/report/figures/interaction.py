@@ -15,10 +15,10 @@ from animat.report.figures.style import (
     legend_columns,
     new_figure,
     shades,
-    shortened,
     spread_out,
     styled,
 )
+from animat.report.numerals import shortened
 
 MARKERS = "os^Dv<>P"
 
