@@ -65,6 +65,7 @@ def interaction_figure(
     fig = new_figure(6.4, 4.2)
     ax = fig.subplots()
     labels = [line.label for line in lines]
+    said = shortened(labels)
     colour = shades(labels) if ordered else agent_colours(labels)
     for number, line in enumerate(lines):
         shown = sorted(line.means, key=lambda level: at[level])
@@ -77,11 +78,11 @@ def interaction_figure(
         mark = MARKERS[number % len(MARKERS)]
         ax.plot(x[joined], mean[joined], color=ink, ls=dash)
         ax.errorbar(x, mean, whiskers, color=ink, ls="none", capsize=3, lw=1.2, ms=5, marker=mark)
-        ax.plot([], [], color=ink, ls=dash, marker=mark, ms=5, label=shortened(line.label))
+        ax.plot([], [], color=ink, ls=dash, marker=mark, ms=5, label=said[line.label])
     if log:
         ax.set_xscale("log")
     if places is None or len(levels) <= TICKS_AT_MOST:
-        words = [shortened(level) for level in levels]
+        words = [shortened(levels)[level] for level in levels]
         turn = len("   ".join(words)) > WIDTH
         if not turn:
             words = _apart(words, np.log(at) if log else at)
