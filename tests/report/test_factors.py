@@ -28,6 +28,13 @@ def test_numbers_come_in_their_order():
     assert got.ordered
 
 
+def test_numbers_are_said_with_as_many_digits_as_tell_them_apart():
+    assert of([0.1 + 0.2, 0.5]).levels == ("0.3", "0.5")
+    assert of([0.1, 0.1 + 2**-55]).levels[0] != of([0.1, 0.1 + 2**-55]).levels[1]
+    close = of([0.1 + k * 2**-50 for k in range(20)])
+    assert len({close.label(k) for k in range(20)}) == 20
+
+
 def test_truth_is_written_as_in_a_study_file():
     assert of([True, False, None]).levels == ("true", "false", NOT_SET)
 

@@ -46,10 +46,11 @@ def said(text, directory):
     return section, " ".join([*section.paragraphs, *section.items])
 
 
-def test_size_luck_and_teacher_are_told(tmp_path):
+def test_size_pairing_and_teacher_are_told(tmp_path):
     section, text = said(FOUR, tmp_path)
     assert "4 cases of 25 lives each, up to 3,000 steps a life, from seed 3" in text
-    assert "Paired: life i of every case" in text
+    assert "Paired (common random numbers): life i of every case" in text
+    assert "not due to" not in text
     assert "3 robots learnt before" in text
     assert "for 1,500 steps in the world abundant" in text
     assert "what its networks say" in text

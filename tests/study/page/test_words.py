@@ -12,6 +12,12 @@ def test_a_value_in_words(value, said):
     assert word(value) == said
 
 
+def test_values_that_differ_are_never_said_alike():
+    assert word(0.12345678) != word(0.12345679)
+    assert words([0.1, 0.10000001]) == "0.1 or 0.10000001"
+    assert words([0.5, 0.1 + 0.2]) == "0.3 or 0.5"
+
+
 def test_values_are_said_once_numbers_in_their_order():
     assert words([20, 10, 20], "steps") == "10 or 20 steps"
     assert words(["lethal", "clamp", "lethal"]) == "lethal or clamp"
