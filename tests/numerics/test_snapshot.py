@@ -161,7 +161,7 @@ def _replaced(x):
     return lambda x: rate * x
 
 
-TEAM = (up, down)
+TEAM = (up,)
 
 
 def law_each(x):
