@@ -151,7 +151,7 @@ def test_an_estimator_that_gives_no_number_fails_its_life(first, told, small):
     assert (curve.errors[0] or "").startswith("estimator: estimator ")
 
 
-@pytest.mark.parametrize("wrong", [{"law": 4e-4}, {"selector": 1.0}, {"wander": 6}, {}])
+@pytest.mark.parametrize("wrong", [{"drives": 1.0}, {"wander": 6}, {"wander": 10}, {}])
 def test_many_hostile_lives_are_the_same_on_any_number_of_threads(wrong, small):
     mind, tables = hostile(**wrong), []
     for threads in (1, 2):
