@@ -17,9 +17,10 @@ LAW, DRIVES, SELECTOR, ESTIMATOR, LEARNER, WANDER = range(1, 7)
 CARRIED = (
     *("x", "y", "heading"),
     *("values", "drives", "drive_sum"),
-    *("estimates", "likelihoods", "weights"),
+    *("estimates", "weights"),
 )
-"""What of a state must be finite. The memory of a wander controller is its own affair."""
+"""What of a state must be finite. Likelihoods are estimates, or no number where none was asked for;
+the memory of a wander controller is its own affair."""
 
 
 class FailedLifeError(LifeError):
