@@ -168,6 +168,18 @@ def test_a_life_that_failed_has_its_name_and_its_error_and_no_trace(faults, tmp_
             assert {"lifespan", "mean_drive", "acts"} <= there
 
 
+def test_where_all_robots_failed_there_is_no_curve(faults, tmp_path, lost):
+    own = tmp_path / "own.py"
+    own.write_text(lost)
+    plan = faults.plan(
+        f'name = "failing"\nsteps = 9\nmeasures = ["learning_curve"]\n[mind]\nagent = "AF"\n'
+        f'wander = "{own}:walk"\nturn_speed = 1\n[teacher]\nrobots = 2\nsteps = 9\n'
+    )
+    made = live_part(plan.text, Part("teachers", 0), {})
+    assert made.failed == 2
+    assert read(made, "curves/teachers-000000.parquet").num_rows == 0
+
+
 def test_minds_and_worlds_of_several_kinds_have_the_same_columns(faults, tmp_path):
     """What a life has not, it has as null."""
     kinds = tuple(kind.model_copy(update={"name": f"{kind.name}2"}) for kind in TABLE_1)

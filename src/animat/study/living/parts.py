@@ -208,7 +208,7 @@ def _teacher_rows(plan: Plan, lived: Lived) -> pa.Table:
 
 
 def _identities(plan: Plan, lived: Lived, count: int) -> pa.Array:
-    return pa.array([plan.classes[lived.piece.place].identity] * count)
+    return pa.array([plan.classes[lived.piece.place].identity] * count, pa.string())
 
 
 def _recorded(plan: Plan, piece: Piece) -> int:
