@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
-from animat.study.provenance import provenance
+from animat.files.provenance import provenance
 
 Key = TypeVar("Key")
 Taken = TypeVar("Taken")

@@ -21,7 +21,7 @@ import numpy as np
 import animat
 import figures
 from animat.life.batch import advance
-from animat.life.setting import Setting, bring_together
+from animat.life.scenario import Setting, bring_together
 from animat.mind.affordance import back_propagate, feed_forward
 from animat.mind.behaviours import curved_wander
 from animat.mind.drives import signed

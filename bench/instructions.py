@@ -151,8 +151,8 @@ def counts() -> dict[str, int]:
     Each is lived by the kernel itself too, and has to come to the same end.
     """
     import animat
-    from animat.life.setting import bring_together
-    from animat.life.slices import live_slice
+    from animat.life.kernels import live_slice
+    from animat.life.scenario import bring_together
 
     found = {}
     for world, agent, infrared in (

@@ -27,7 +27,7 @@ import animat
 import figures
 import machine
 from animat.life.batch import advance
-from animat.life.setting import Setting, bring_together
+from animat.life.scenario import Setting, bring_together
 from animat.mind.behaviours import ACT, WANDER
 from figures import Table
 from step_parts import NOTHING, PARTS, Part, alone, dark_at, in_step

@@ -19,7 +19,7 @@ import numpy as np
 import animat
 import figures
 from animat.life.batch import advance
-from animat.life.setting import Setting, bring_together
+from animat.life.scenario import Setting, bring_together
 from figures import Table, Target
 
 AGENTS = ("BLIND", "AF", "LEARNING")

@@ -21,15 +21,15 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from animat.files.provenance import provenance
 from animat.life import lives as engine
 from animat.life.lives import live_chunks
-from animat.life.setting import bring_together
-from animat.study.design.settings import LifeSettings
-from animat.study.design.study import Study
-from animat.study.living.numbering import LARGEST
-from animat.study.living.plan import plan_of
-from animat.study.provenance import provenance
-from animat.study.running.run import run, threads
+from animat.life.scenario import bring_together
+from animat.study.execute.run import run, threads
+from animat.study.file.settings import LifeSettings
+from animat.study.file.study import Study
+from animat.study.plan.numbering import LARGEST
+from animat.study.plan.plan import plan_of
 
 SEED = 1
 

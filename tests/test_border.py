@@ -17,14 +17,14 @@ from pydantic import BaseModel
 
 import animat
 import animat.study
+from animat.files.settings import Settings
+from animat.files.validation_errors import shown
 from animat.mind.physiology import Variable
-from animat.mistakes import shown
 from animat.robot.khepera import Sensor
-from animat.settings import Settings
-from animat.study.design.design import Exclusion
-from animat.study.design.factors import Range
-from animat.study.design.sampling import Sample
-from animat.study.design.study import Record
+from animat.study.file.design import Exclusion
+from animat.study.file.factors import Range
+from animat.study.file.sampling import Sample
+from animat.study.file.study import Record
 
 
 class Unhashable:

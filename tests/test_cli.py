@@ -14,7 +14,7 @@ from typing import IO, NamedTuple
 import pyarrow.parquet as pq
 import pytest
 
-import animat.study.reproduction.publication
+import animat.report.reproduction_page
 from animat.cli import main
 from animat.life.life import live
 from animat.mind.mind import Mind
@@ -253,7 +253,7 @@ def test_a_mistake_of_ours_is_one_line_and_code_1(animat_says, monkeypatch, erro
     def fails(*_):
         raise error
 
-    monkeypatch.setattr("animat.study.one_life.live_one", fails)
+    monkeypatch.setattr("animat.cli.one_life.live_one", fails)
     said = animat_says("life")
     assert (said.code, said.out) == (1, "")
     (line,) = said.err.splitlines()
@@ -332,7 +332,7 @@ class TestReplay:
             record.factor *= 1.0 - 1e-7
             return record
 
-        monkeypatch.setattr("animat.life.setting.parameters", otherwise)
+        monkeypatch.setattr("animat.life.scenario.parameters", otherwise)
         said = animat_says("replay", "a.parquet", "--verify")
         assert said.code == 1
         lines = said.out.splitlines()
@@ -395,7 +395,7 @@ class TestReproduce:
         for name in ("lives.parquet", "claims.json", "settings.toml", "figure3_grasp.svg"):
             assert (tmp_path / "again" / name).read_bytes() == (out / name).read_bytes()
 
-        monkeypatch.setattr(animat.study.reproduction.publication, "publish", briefly)
+        monkeypatch.setattr(animat.report.reproduction_page, "publish", briefly)
         assert animat_says("reproduce", *SMALL).code == 2
         assert (out / "lives.parquet").is_file()
         assert animat_says("reproduce", *SMALL, "--force").code == 0
@@ -409,7 +409,7 @@ class TestReproduce:
             sizes.append(size)
             raise KeyboardInterrupt
 
-        monkeypatch.setattr("animat.study.reproduction.reproduction.reproduce", run)
+        monkeypatch.setattr("animat.experiments.reproduction.reproduce", run)
         for options in ((), ("--quick",), ("--quick", "--lives", "7"), ("--seeds", "3")):
             assert animat_says("reproduce", *options).code == 130
         full, quick, changed, seeds = sizes
@@ -429,7 +429,7 @@ class TestReproduce:
             (directory / "lives.parquet").touch()
             raise KeyboardInterrupt
 
-        monkeypatch.setattr(animat.study.reproduction.publication, "publish", interrupted)
+        monkeypatch.setattr(animat.report.reproduction_page, "publish", interrupted)
         for options in (("--force",), ("--out", "new/one")):
             said = animat_says("reproduce", *SMALL, *options)
             assert (said.code, said.out) == (130, "")
@@ -438,7 +438,7 @@ class TestReproduce:
         assert names(old) == ["how_made.json"]
         assert names(tmp_path / "new") == [".one.partial"]
 
-        monkeypatch.setattr(animat.study.reproduction.publication, "publish", briefly)
+        monkeypatch.setattr(animat.report.reproduction_page, "publish", briefly)
         said = animat_says("reproduce", *SMALL, "--seed", "1", "--out", "new/one")
         assert said.code == 2
         assert "seed = 0 there and 1 here" in said.err
@@ -491,7 +491,7 @@ def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name_and_is_gone_o
         )
     log = tmp_path / ".out.partial" / "experiment2" / "log.jsonl"
     assert 0 < log.read_text().count('"event": "part", ') < 64
-    monkeypatch.setattr(animat.study.reproduction.publication, "publish", briefly)
+    monkeypatch.setattr(animat.report.reproduction_page, "publish", briefly)
     assert animat_says("reproduce", *size, "--out", "out").code == 0
     assert names(tmp_path) == ["out"]
     log = tmp_path / "out" / "experiment2" / "log.jsonl"

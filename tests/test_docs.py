@@ -13,18 +13,19 @@ import pytest
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from animat.life.setting import bring_together
+from animat.files.settings import Settings, SettingsError, read_toml
+from animat.life.scenario import bring_together
 from animat.mind.functions import SIGNATURES
 from animat.mind.mind import Behaviour, Drive, Learning, Mind, VariableChange
 from animat.mind.physiology import PHYSIOLOGIES, Variable
 from animat.robot.khepera import Khepera
-from animat.settings import Settings, SettingsError, read_toml
-from animat.study.design.design import Exclusion
-from animat.study.design.sampling import Sample
-from animat.study.design.settings import LifeSettings, Teacher, WorldChoice
-from animat.study.design.study import Record, Study, read_study
-from animat.study.living.plan import Plan, plan_of
-from animat.study.running.run import run, threads
+from animat.study.execute.run import run, threads
+from animat.study.file.design import Exclusion
+from animat.study.file.read import read_study
+from animat.study.file.sampling import Sample
+from animat.study.file.settings import LifeSettings, Teacher, WorldChoice
+from animat.study.file.study import Record, Study
+from animat.study.plan.plan import Plan, plan_of
 from animat.world.files import world_file
 from animat.world.world import World
 

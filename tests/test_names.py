@@ -13,14 +13,15 @@ from hypothesis import strategies as st
 
 from animat.errors import Error, SettingsError
 from animat.life.birth import born
-from animat.life.setting import LifeError, checked_parameters
+from animat.life.scenario import LifeError, checked_parameters
 from animat.life.summary import summary
 from animat.life.trace import row_dtype, table
 from animat.mind.mind import Mind
 from animat.names import KEPT, LIKELIHOOD, LIVES, MARKS, MODES, OF_A_STUDY, TRACE, spelled
-from animat.study.design.design import Design, cases
-from animat.study.design.settings import CaseSettings, WorldChoice
-from animat.study.design.study import Study
+from animat.study.file.cases import cases
+from animat.study.file.design import Design
+from animat.study.file.settings import CaseSettings, WorldChoice
+from animat.study.file.study import Study
 from animat.world.objects import TABLE_1, ObjectType
 from animat.world.world import World
 

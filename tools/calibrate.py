@@ -22,7 +22,7 @@ import numpy as np
 import animat
 from animat.life.batch import Batch
 from animat.life.likelihoods import afforded, likelihoods
-from animat.life.setting import bring_together
+from animat.life.scenario import bring_together
 
 TYPES = ("TS", "TL", "CS", "CL")
 SEED = 20_030_401

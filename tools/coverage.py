@@ -14,9 +14,9 @@ import argparse
 import numpy as np
 import pyarrow as pa
 
-from animat.report.margins import margin
-from animat.report.sample import sample
-from animat.report.two_factors import interactions
+from animat.statistics.factor_effects import margin
+from animat.statistics.sample import sample
+from animat.statistics.two_factors import interactions
 
 MEAN = 400.0
 """The mean lifespan in the first world; in the n-th it is n times that."""

@@ -76,8 +76,8 @@ def main() -> None:
             flush=True,
         )
         pq.write_table(pa.Table.from_pylist(rows), options.out / "density.parquet")
-    from animat.report.figures.ratio import ratio_figure
-    from animat.report.figures.style import save
+    from animat.figures.ratio import ratio_figure
+    from animat.figures.style import save
 
     save(ratio_figure(pa.Table.from_pylist(rows)), options.out / "density")
 

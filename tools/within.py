@@ -16,10 +16,10 @@ import numpy as np
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from animat.report.estimates import Estimate, bootstrapped, share
-from animat.report.lives import column
-from animat.report.multiverse.marginal import difference
-from animat.report.multiverse.universes import CLAIMS
+from animat.statistics.estimates import Estimate, bootstrapped, share
+from animat.statistics.lives import column
+from animat.statistics.marginal_effects import difference
+from animat.statistics.universes import CLAIMS
 
 GAINS = ("abundant_gain", "scarce_gain", "worlds_blind")
 LIFESPANS = ("mean_abundant_BLIND", "mean_abundant_AF", "mean_scarce_BLIND", "mean_scarce_AF")

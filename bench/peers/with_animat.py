@@ -14,7 +14,7 @@ import work
 
 import animat
 from animat.life.batch import advance
-from animat.life.setting import Setting, bring_together
+from animat.life.scenario import Setting, bring_together
 
 POST = animat.ObjectType(
     name="post",

@@ -13,15 +13,15 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from animat.cli.one_life import record
     from animat.errors import Error, SettingsError
     from animat.life.life import Life, Moment, live
     from animat.life.lives import Lives, live_many
-    from animat.life.recording import Recording
     from animat.mind.mind import Behaviour, Drive, Learning, Mind, VariableChange
     from animat.mind.networks import Networks
+    from animat.recording.recording import Recording
     from animat.robot.khepera import Khepera
-    from animat.study.from_python import StudyRun, run
-    from animat.study.one_life import record
+    from animat.study_run import StudyRun, run
     from animat.version import __version__ as __version__
     from animat.world.arena import Arena
     from animat.world.layout import Layout, Placement
@@ -43,17 +43,17 @@ _HOMES = {
     "Networks": "animat.mind.networks",
     "ObjectType": "animat.world.objects",
     "Placement": "animat.world.layout",
-    "Recording": "animat.life.recording",
+    "Recording": "animat.recording.recording",
     "SettingsError": "animat.errors",
-    "StudyRun": "animat.study.from_python",
+    "StudyRun": "animat.study_run",
     "TABLE_1": "animat.world.objects",
     "VariableChange": "animat.mind.mind",
     "World": "animat.world.world",
     "__version__": "animat.version",
     "live": "animat.life.life",
     "live_many": "animat.life.lives",
-    "record": "animat.study.one_life",
-    "run": "animat.study.from_python",
+    "record": "animat.cli.one_life",
+    "run": "animat.study_run",
 }
 
 __all__ = [

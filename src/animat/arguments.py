@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from animat.errors import Error, SettingsError
-from animat.mistakes import brief
+from animat.files.validation_errors import brief
 
 if TYPE_CHECKING:
     import numpy as np

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from animat.mistakes import printable
-
 
 class Error(Exception):
     """Something that animat cannot do; `str` gives a line for each of its `problems`."""
@@ -20,3 +18,8 @@ class Error(Exception):
 
 class SettingsError(Error, ValueError):
     """Everything that is wrong with what a user gave: settings, arguments, files."""
+
+
+def printable(text: str) -> str:
+    """Return a text with escapes for what cannot be printed, or would move a terminal's cursor."""
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)

@@ -11,7 +11,7 @@ import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby, product
 
-from animat.mistakes import plain
+from animat.files.validation_errors import plain
 
 Templates = Sequence[str]
 

@@ -7,8 +7,8 @@ import sys
 import pytest
 
 from animat.cli import main
-from animat.study.multiverse import page
-from animat.study.multiverse import run as module
+from animat.experiments import multiverse as module
+from animat.report import multiverse_page as page
 
 SMALL = [
     argument

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from animat.study.design.study import read_study
+from animat.study.file.read import read_study
 
 
 def test_a_file_is_written_that_can_be_checked(animat, tmp_path):

@@ -12,9 +12,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from animat import progress
-from animat.study.running.interruption import ASKED
-from animat.study.store import lock
-from animat.study.store.lock import hold
+from animat.files import lock
+from animat.files.lock import hold
+from animat.study.execute.signals import ASKED
 from animat.study.store.results import Results
 from animat.study.store.status import status
 

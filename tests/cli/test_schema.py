@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from animat.study.design.schema import study_schema
+from animat.study.file.schema import study_schema
 
 
 def test_it_prints_the_schema(animat):

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from animat.life.batch import advance
 from animat.life.life import Life, live
-from animat.life.setting import bring_together
+from animat.life.scenario import bring_together
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
 from animat.robot.khepera import Khepera

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from animat.life.batch import advance
 from animat.life.digest import digest
 from animat.life.engine import ENGINE
-from animat.life.setting import bring_together
+from animat.life.scenario import bring_together
 from animat.mind.agents import AGENTS
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks

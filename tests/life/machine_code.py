@@ -26,7 +26,7 @@ from numba.core.dispatcher import Dispatcher
 import animat
 from animat.life.life import live
 from animat.life.likelihoods import likelihoods
-from animat.life.setting import bring_together
+from animat.life.scenario import bring_together
 from animat.mind.mind import Mind
 from animat.world.world import World
 

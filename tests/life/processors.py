@@ -100,7 +100,7 @@ def code() -> dict[str, Any]:
     """Return what live_slice was compiled to in this process."""
     import numba
 
-    from animat.life.slices import live_slice
+    from animat.life.kernels import live_slice
     from animat.numerics.compiled import OPTIONS
 
     def product_and_sum(x):

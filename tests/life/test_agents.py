@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from animat.life.life import live
-from animat.life.setting import LifeError, bring_together
+from animat.life.scenario import LifeError, bring_together
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
 from animat.numerics.streams import SELECTION, uniforms

@@ -12,7 +12,7 @@ from animat.life import batch as module
 from animat.life.batch import EPISODES, Batch, StoppedError, advance
 from animat.life.failure import FailedLifeError
 from animat.life.life import live
-from animat.life.setting import LifeError, Setting, bring_together
+from animat.life.scenario import LifeError, Setting, bring_together
 from animat.mind.mind import Mind
 from animat.world.world import World
 

@@ -18,7 +18,7 @@ from animat.life.digest import digest
 from animat.life.engine import ENGINE
 from animat.life.life import live
 from animat.life.lives import live_many
-from animat.life.setting import bring_together
+from animat.life.scenario import bring_together
 from animat.mind.agents import AGENTS
 from animat.mind.mind import Mind
 from animat.mind.physiology import PHYSIOLOGIES

@@ -7,7 +7,7 @@ import pytest
 
 from animat.life.batch import advance
 from animat.life.digest import SCRATCH, digest
-from animat.life.setting import bring_together
+from animat.life.scenario import bring_together
 from animat.life.state import state_dtype
 from animat.mind.mind import Mind
 

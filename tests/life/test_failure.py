@@ -10,17 +10,17 @@ import numpy as np
 import pyarrow.compute as pc
 import pytest
 
+from animat.cli.one_life import record
 from animat.life.batch import Batch
 from animat.life.failure import FailedLifeError
 from animat.life.life import live
 from animat.life.lives import live_many
-from animat.life.setting import bring_together
+from animat.life.scenario import bring_together
 from animat.life.trace import row_dtype
 from animat.mind.functions import SIGNATURES, FunctionError
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
 from animat.robot.khepera import Khepera
-from animat.study.one_life import record
 
 STEPS = 6_000
 LIVES = 300

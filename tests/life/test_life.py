@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from animat.life.life import Moment, birth, live, lived
-from animat.life.setting import LifeError, bring_together
+from animat.life.scenario import LifeError, bring_together
 from animat.mind.mind import Mind
 
 LEARNER = Mind(agent="LEARNING")

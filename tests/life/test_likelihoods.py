@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from animat.life.likelihoods import afforded, likelihoods
-from animat.life.setting import bring_together
+from animat.life.scenario import bring_together
 from animat.mind.mind import Behaviour, Mind
 from animat.mind.networks import Networks
 from animat.world.objects import TABLE_1

@@ -10,9 +10,9 @@ from animat.life import batch
 from animat.life import lives as module
 from animat.life.life import live
 from animat.life.lives import live_chunks, live_many
-from animat.life.setting import LifeError, bring_together
+from animat.life.scenario import LifeError, bring_together
 from animat.mind.mind import Mind
-from animat.report.survival import ALIVE
+from animat.statistics.survival import ALIVE
 
 STEPS = 4_000
 

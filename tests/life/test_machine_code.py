@@ -19,7 +19,7 @@ pytestmark = pytest.mark.long
 
 HERE = Path(__file__).parent
 
-STEPS = ("animat.life.slices.live_slice", "animat.life.slices.live_recorded")
+STEPS = ("animat.life.kernels.live_slice", "animat.life.kernels.live_recorded")
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import pytest
 import shapely
 
 from animat.life.life import live
-from animat.life.setting import bring_together
+from animat.life.scenario import bring_together
 from animat.life.state import NO_SITE
 from animat.mind.behaviours import ACT, LEAVE, WANDER
 from animat.mind.mind import Mind

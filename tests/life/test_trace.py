@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from animat.life.life import live
-from animat.life.setting import LifeError
+from animat.life.scenario import LifeError
 from animat.life.state import EVENTS
 from animat.mind.behaviours import curved_wander
 from animat.mind.mind import Mind

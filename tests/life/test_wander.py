@@ -6,7 +6,7 @@ from scipy import ndimage
 
 from animat.life.batch import advance
 from animat.life.life import live
-from animat.life.setting import bring_together
+from animat.life.scenario import bring_together
 from animat.mind.behaviours import ACT
 from animat.mind.mind import Mind
 from animat.robot.khepera import Khepera

@@ -2,7 +2,8 @@ import pytest
 
 from animat.mind.agents import ACCEPT_ALL, AGENTS, ASK_NETWORKS, ASK_TRUTH
 from animat.mind.mind import Mind
-from animat.mind.parameters import SELECTORS, parameters
+from animat.mind.parameters import parameters
+from animat.mind.selection import SELECTORS
 
 
 @pytest.mark.parametrize(

@@ -3,11 +3,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from animat.files.settings import SettingsError
 from animat.mind.affordance import weight_count
 from animat.mind.mind import Behaviour, Drive, Learning, Mind, VariableChange
 from animat.mind.networks import Networks
 from animat.mind.physiology import PHYSIOLOGIES, Variable
-from animat.settings import SettingsError
 
 HUNGER = {"hunger": {"a": {"nutrition": 1.0}}}
 EAT = {"eat": {"serves": "hunger", "needs": "grasp"}}

@@ -3,10 +3,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from animat.files.settings import SettingsError
 from animat.mind.affordance import feed_forward, weight_count
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
-from animat.settings import SettingsError
 
 EAT_AND_REST = ("eat", "rest")
 

@@ -7,7 +7,7 @@ import types
 import numpy as np
 import pytest
 
-from animat.life.setting import bring_together
+from animat.life.scenario import bring_together
 from animat.mind import trial
 from animat.mind.functions import SIGNATURES, FunctionError, checked_twin, resolve
 from animat.mind.mind import Mind

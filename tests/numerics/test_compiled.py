@@ -142,7 +142,7 @@ class Laboratory:
             self.package / "numerics",
             ignore=shutil.ignore_patterns("__pycache__"),
         )
-        for module in ("settings.py", "mistakes.py"):
+        for module in ("files/settings.py", "files/validation_errors.py"):
             shutil.copy(real / module, self.package)
         (self.package / "life").mkdir()
         for package in (self.package, self.package / "life"):

@@ -20,11 +20,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from animat.files.settings import SettingsError
 from animat.mind.selection import affordance_times_drive, select, winner_take_all
 from animat.numerics import identity as module
 from animat.numerics.identity import identity
 from animat.numerics.snapshot import lasting_identity, source_files
-from animat.settings import SettingsError
 
 HELPER = """
 from numba import njit

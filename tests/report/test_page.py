@@ -6,8 +6,6 @@ import pytest
 from matplotlib.figure import Figure
 
 from animat.report import page
-from animat.report.claims import judge
-from animat.report.estimates import UNKNOWN, Estimate
 from animat.report.page import (
     Badge,
     Picture,
@@ -22,7 +20,9 @@ from animat.report.page import (
     picture_file,
     write_page,
 )
-from animat.report.survival import summarise
+from animat.statistics.claims import judge
+from animat.statistics.estimates import UNKNOWN, Estimate
+from animat.statistics.survival import summarise
 
 
 class Reader(HTMLParser):

@@ -3,11 +3,11 @@ import pyarrow as pa
 import pytest
 
 from animat.report.blocks import COLUMNS_AT_MOST
-from animat.report.findings import find
 from animat.report.page import p_value, write_page
 from animat.report.sections import CONFOUNDED, NOBODY_DIED, in_short, result_sections
+from animat.statistics.findings import find
 
-from .designs import crossed, lived
+from ..statistics.designs import crossed, lived
 
 
 def titles(found):

@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
+from animat.files.settings import SettingsError
 from animat.robot.khepera import LINEAR, MICHEL1996, ROBOT, Khepera
-from animat.settings import SettingsError
 
 
 def test_record_holds_settings():

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from animat.study.design.settings import LifeSettings
-from animat.study.living.plan import Plan
-from animat.study.reproduction.publication import publish
-from animat.study.reproduction.reproduction import Reproduction, Size, reproduce
-from animat.study.running.run import run, threads
+from animat.experiments.reproduction import Reproduction, Size, reproduce
+from animat.report.reproduction_page import publish
+from animat.study.execute.run import run, threads
+from animat.study.file.settings import LifeSettings
+from animat.study.plan.plan import Plan
 
 Told = list[tuple[str, int, int]]
 

@@ -27,11 +27,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from animat.files import RunError
-from animat.settings import SettingsError
-from animat.study.design.study import Study
-from animat.study.living.plan import Plan, plan_of
-from animat.study.running.run import run, threads
+from animat.files.atomic import RunError
+from animat.files.settings import SettingsError
+from animat.study.execute.run import run, threads
+from animat.study.file.study import Study
+from animat.study.plan.plan import Plan, plan_of
 
 SMALL = """
 name = "small"

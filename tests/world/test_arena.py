@@ -1,6 +1,6 @@
 import pytest
 
-from animat.settings import SettingsError
+from animat.files.settings import SettingsError
 from animat.world.arena import Arena
 
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from animat.settings import SettingsError
+from animat.files.settings import SettingsError
 from animat.world.arena import Arena
 from animat.world.files import read_world, write_world
 from animat.world.layout import MOST_SITES, Layout, LayoutError, Placement

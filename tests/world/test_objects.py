@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
-from animat.settings import SettingsError
+from animat.files.settings import SettingsError
 from animat.world.objects import TABLE_1, ObjectType
 
 MINE = {

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import shapely
 
-from animat.settings import SettingsError
+from animat.files.settings import SettingsError
 from animat.world.arena import Arena
 from animat.world.layout import Layout, LayoutError, Placement
 from animat.world.objects import TABLE_1, ObjectType

@@ -78,7 +78,7 @@ def _set_environment() -> None:
 
 def _check_not_empty(arguments: list[str]) -> None:
     """Refuse an empty argument: as a path it would be the working directory."""
-    from animat.settings import SettingsError
+    from animat.files.settings import SettingsError
 
     for before, argument in zip(["", *arguments], arguments, strict=False):
         option = argument or before
@@ -89,8 +89,8 @@ def _check_not_empty(arguments: list[str]) -> None:
 
 def _explain(error: Exception) -> NoReturn:
     """Say what went wrong in a line for each mistake, and exit."""
-    from animat.files import RunError
-    from animat.settings import SettingsError
+    from animat.files.atomic import RunError
+    from animat.files.settings import SettingsError
 
     if "--debug" in sys.argv:
         traceback.print_exception(error)

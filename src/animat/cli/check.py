@@ -13,9 +13,9 @@ from animat.cli.options import Debug, Set, StudyFile
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from animat.study.design.design import Case
-    from animat.study.design.factors import Scalar
-    from animat.study.running.expectation import Expectation, Range
+    from animat.study.file.cases import Case
+    from animat.study.file.factors import Scalar
+    from animat.study.plan.cost import Expectation, Range
 
 PRINTED_WIDTH = 120
 """Characters in a line of a table that is printed elsewhere than on a terminal."""
@@ -32,12 +32,12 @@ def check(study: StudyFile, changes: Set = None, debug: Debug = False) -> None:
     """Say what a study would run, and what that would cost, without running it."""
     from rich.console import Console
 
-    from animat.study.design.design import excluded
-    from animat.study.design.shipped import study_file
-    from animat.study.design.study import read_study
-    from animat.study.living.plan import Plan
-    from animat.study.running.expectation import expect
-    from animat.study.running.livable import check_livable
+    from animat.study.file.builtin import study_file
+    from animat.study.file.cases import excluded
+    from animat.study.file.read import read_study
+    from animat.study.plan.cost import expect
+    from animat.study.plan.plan import Plan
+    from animat.study.plan.preflight import check_livable
 
     path = study_file(study)
     asked = read_study(path, changes or ())
@@ -63,7 +63,7 @@ def _table(cases: Sequence[Case]) -> Table:
     """Return the cases as a table, of many only the first and the last ones."""
     from rich.table import Table
 
-    from animat.study.design.factors import identity
+    from animat.study.file.factors import identity
 
     names = list(dict.fromkeys(name for case in cases for name in case.factors))
     in_columns = len(names) <= COLUMNS
@@ -90,14 +90,14 @@ def _table(cases: Sequence[Case]) -> Table:
 
 def _said(values: Sequence[Scalar]) -> dict[tuple[bool, Scalar], str]:
     """Return the numbers among values in words that tell them apart."""
-    from animat.report.numerals import numerals
+    from animat.statistics.numerals import numerals
 
     numbers = [v for v in values if isinstance(v, int | float) and not isinstance(v, bool)]
     return {(False, number): said for number, said in numerals(numbers).items()}
 
 
 def _costs(expected: Expectation) -> list[str]:
-    from animat.study.running.expectation import STEPS
+    from animat.study.plan.cost import STEPS
 
     learning = ""
     if expected.robots:

@@ -75,8 +75,8 @@ def life(
     debug: Debug = False,
 ) -> None:
     """Live one life, and say how it went and why it ended."""
+    from animat.cli.one_life import OneLife, live_one, story
     from animat.progress import telling
-    from animat.study.one_life import OneLife, live_one, story
 
     _check_together(context)
     chosen = settings_of(settings, changes, physiology=physiology, agent=agent, world=world)
@@ -92,7 +92,7 @@ def life(
 
 def _check_together(context: typer.Context) -> None:
     """Refuse options that do not go together."""
-    from animat.settings import SettingsError
+    from animat.files.settings import SettingsError
 
     given = {
         name

@@ -13,8 +13,8 @@ from animat.cli.app import DONE, INTERRUPTED, app
 from animat.cli.options import Debug, Out, Quick, Set, StudyFile, Threads
 
 if TYPE_CHECKING:
-    from animat.study.design.study import Study
-    from animat.study.multiverse.run import Multiverse
+    from animat.experiments.multiverse import Multiverse
+    from animat.study.file.study import Study
 
 QUICK = (
     "lives=10",
@@ -46,15 +46,15 @@ def multiverse(
 
     A directory that is finished is analysed again; one that is not is gone on with.
     """
+    from animat.experiments.multiverse import InterruptedStudyError, Size, run_multiverse
+    from animat.experiments.multiverse_designs import of_size
+    from animat.experiments.universes import readings_of
+    from animat.files.provenance import provenance
     from animat.progress import telling
-    from animat.study.design.shipped import study_file
-    from animat.study.design.study import read_study
-    from animat.study.multiverse.designs import of_size
-    from animat.study.multiverse.page import FIGURES, publish
-    from animat.study.multiverse.run import InterruptedStudyError, Size, run_multiverse
-    from animat.study.multiverse.universes import readings_of
-    from animat.study.provenance import provenance
-    from animat.study.running.run import threads as workers_of
+    from animat.report.multiverse_page import FIGURES, publish
+    from animat.study.execute.run import threads as workers_of
+    from animat.study.file.builtin import study_file
+    from animat.study.file.read import read_study
 
     asked = read_study(study_file(study), [*(QUICK if quick else ()), *(changes or ())])
     readings_of(asked)
@@ -81,10 +81,10 @@ def multiverse(
 
 
 def _say_what(asked: Study, directory: Path) -> None:
-    from animat.report.multiverse.universes import CELLS
-    from animat.study.design.design import excluded
-    from animat.study.multiverse.designs import count
-    from animat.study.multiverse.universes import readings_of
+    from animat.experiments.multiverse_designs import count
+    from animat.experiments.universes import readings_of
+    from animat.statistics.universes import CELLS
+    from animat.study.file.cases import excluded
 
     print(
         f"{asked.name}: {count(asked):,} universes of {len(readings_of(asked))} readings,"
@@ -101,7 +101,7 @@ def _print(found: Multiverse) -> None:
     from rich.table import Table
 
     from animat.cli.reproduce import PRINTED_WIDTH
-    from animat.study.multiverse.tables import shares_table, smallest_table
+    from animat.report.multiverse_tables import shares_table, smallest_table
 
     console = Console(width=None if sys.stdout.isatty() else PRINTED_WIDTH)
     if found.missing:

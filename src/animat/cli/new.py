@@ -19,7 +19,7 @@ def new(
     debug: Debug = False,
 ) -> None:
     """Write a study file to start from: small, with a comment on every line that matters."""
-    from animat.study.design.shipped import write_starter
+    from animat.study.file.builtin import write_starter
 
     write_starter(file, force=force)
     print(f"{file} is written; {shlex.join(['animat', 'check', str(file)])} says what it would run")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from animat.study.design.settings import LifeSettings
+    from animat.study.file.settings import LifeSettings
 
 SettingsFile = Annotated[
     Path | None,
@@ -48,11 +48,11 @@ def settings_of(
     """
     from pydantic import ValidationError
 
-    from animat.mistakes import mistakes, written
-    from animat.settings import SettingsError, parse_toml, validated
-    from animat.study.design.keys import UnknownKeyError, put
-    from animat.study.design.overrides import led_by, override
-    from animat.study.design.settings import LifeSettings
+    from animat.files.settings import SettingsError, parse_toml, validated
+    from animat.files.validation_errors import mistakes, written
+    from animat.study.file.keys import UnknownKeyError, put
+    from animat.study.file.overrides import led_by, override
+    from animat.study.file.settings import LifeSettings
 
     data = {} if file is None else parse_toml(file)
     changed, problems = override(data, LifeSettings, changes or ())

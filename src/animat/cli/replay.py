@@ -12,8 +12,8 @@ from animat.cli.app import FAILED, app
 from animat.cli.options import Debug
 
 if TYPE_CHECKING:
-    from animat.life.difference import Difference
-    from animat.life.recording import Recording
+    from animat.recording.divergence import Difference
+    from animat.recording.recording import Recording
 
 
 @app.command()
@@ -28,8 +28,8 @@ def replay(
     debug: Debug = False,
 ) -> None:
     """Show what a recording holds, or live its life again and compare."""
-    from animat.life.recording import Recording
     from animat.progress import telling
+    from animat.recording.recording import Recording
 
     recording = Recording.load(file)
     if not verify:

@@ -27,7 +27,7 @@ def report(
 ) -> None:
     """Write one page on a study: what was asked, how it was run, what came out."""
     from animat.progress import telling
-    from animat.study.page.report import write_report
+    from animat.report.study_page import write_report
     from animat.study.store.results import open as open_results
 
     results = open_results(directory)

@@ -15,7 +15,7 @@ from animat.cli.app import app
 from animat.cli.options import CheckFunctions, Debug, Seed, SettingsFile, settings_of
 
 if TYPE_CHECKING:
-    from animat.study.reproduction.reproduction import Reproduction
+    from animat.experiments.reproduction import Reproduction
 
 PRINTED_WIDTH = 120
 """Characters in a line of a table that is printed elsewhere than on a terminal."""
@@ -40,11 +40,11 @@ def reproduce(
     debug: Debug = False,
 ) -> None:
     """Run both experiments of the paper and judge its claims."""
+    from animat.experiments.reproduction import QUICK, Size, check
+    from animat.experiments.reproduction import reproduce as run
     from animat.progress import telling
-    from animat.study.reproduction.publication import FIGURES, publish
-    from animat.study.reproduction.reproduction import QUICK, Size, check
-    from animat.study.reproduction.reproduction import reproduce as run
-    from animat.study.store.output import fresh_directory
+    from animat.report.reproduction_page import FIGURES, publish
+    from animat.study.store.atomic_directory import fresh_directory
 
     size = QUICK if quick else Size()
     given = {"lives": lives, "robots": seeds, "steps": steps}
@@ -84,8 +84,8 @@ def _print_result(result: Reproduction) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from animat.report.estimates import Estimate
     from animat.report.page import interval
+    from animat.statistics.estimates import Estimate
 
     console = Console(width=None if sys.stdout.isatty() else PRINTED_WIDTH)
     claims = Table("", "claim", "paper", "here (95 % interval)", "verdict")

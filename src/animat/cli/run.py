@@ -13,8 +13,8 @@ from animat.cli.app import DONE, FAILED, INTERRUPTED, app
 from animat.cli.options import CheckFunctions, Debug, Out, Set, StudyFile, Threads
 
 if TYPE_CHECKING:
-    from animat.study.living.plan import Plan
-    from animat.study.running.run import Outcome, Workers
+    from animat.study.execute.run import Outcome, Workers
+    from animat.study.plan.plan import Plan
 
 SHOWN = 3
 """Lives that failed of which the error is shown."""
@@ -41,14 +41,14 @@ def run(
     debug: Debug = False,
 ) -> int:
     """Live the lives of a study, or those that its results directory still lacks."""
+    from animat.files.settings import SettingsError
     from animat.progress import telling
-    from animat.settings import SettingsError
-    from animat.study.design.shipped import study_file
-    from animat.study.design.study import read_study
-    from animat.study.living.plan import plan_of
-    from animat.study.running.livable import check_livable
-    from animat.study.running.run import run as live
-    from animat.study.store.description import MANIFEST
+    from animat.study.execute.run import run as live
+    from animat.study.file.builtin import study_file
+    from animat.study.file.read import read_study
+    from animat.study.plan.plan import plan_of
+    from animat.study.plan.preflight import check_livable
+    from animat.study.store.manifest import MANIFEST
 
     if check_functions and cluster is not None:
         raise SettingsError("--check-functions: is for this machine; leave out --cluster")
@@ -65,9 +65,9 @@ def run(
 def _workers(
     plan: Plan, count: int | None, where: str | None, jobs: int | None
 ) -> AbstractContextManager[Workers]:
-    from animat.settings import SettingsError
-    from animat.study.running.cluster import cluster
-    from animat.study.running.run import threads
+    from animat.files.settings import SettingsError
+    from animat.study.cluster.cluster import cluster
+    from animat.study.execute.run import threads
 
     if where is None:
         if jobs is not None:
@@ -79,7 +79,7 @@ def _workers(
 
 
 def _say_what(plan: Plan, directory: Path) -> None:
-    from animat.study.design.design import excluded
+    from animat.study.file.cases import excluded
 
     cases, lives = len(plan.cases), plan.numbering["lives"].total
     print(f"{plan.study.name}: {cases:,} cases, {lives:,} lives; results in {directory}")

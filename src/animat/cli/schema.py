@@ -11,6 +11,6 @@ def schema(debug: Debug = False) -> None:
     """Print the JSON schema of a study file, for an editor to complete and check it."""
     import json
 
-    from animat.study.design.schema import study_schema
+    from animat.study.file.schema import study_schema
 
     print(json.dumps(study_schema(), indent=2))

@@ -21,15 +21,16 @@ def sensitivity(
     debug: Debug = False,
 ) -> int:
     """Say which continuous parameters lifespans depend on: Sobol's indices."""
+    from animat.experiments.sensitivity import check
+    from animat.experiments.sensitivity import sensitivity as indices_of
+    from animat.files.provenance import provenance
     from animat.progress import telling
-    from animat.study.design.shipped import study_file
-    from animat.study.design.study import read_study
-    from animat.study.living.plan import Plan
-    from animat.study.provenance import provenance
-    from animat.study.running.run import run
-    from animat.study.running.run import threads as workers_of
-    from animat.study.sensitivity import check, publish, short
-    from animat.study.sensitivity import sensitivity as indices_of
+    from animat.report.sensitivity_page import publish, short
+    from animat.study.execute.run import run
+    from animat.study.execute.run import threads as workers_of
+    from animat.study.file.builtin import study_file
+    from animat.study.file.read import read_study
+    from animat.study.plan.plan import Plan
     from animat.study.store.results import open as open_results
 
     asked = read_study(study_file(study), [*(QUICK if quick else ()), *(changes or ())])

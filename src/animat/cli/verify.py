@@ -12,8 +12,8 @@ from animat.cli.options import Debug, ResultsDirectory
 def verify(directory: ResultsDirectory, debug: Debug = False) -> int:
     """Read all results of a study again, live some of its lives again, and say what differs."""
     from animat.progress import telling
+    from animat.study.execute.verify import verify as look
     from animat.study.store.results import open as open_results
-    from animat.study.store.verify import verify as look
 
     results = open_results(directory)
     with telling() as tell:

@@ -27,8 +27,8 @@ def world(
     from rich.console import Console
     from rich.table import Table
 
-    from animat.settings import SettingsError
-    from animat.study.one_world import draw, look, table
+    from animat.cli.one_world import draw, look, table
+    from animat.files.settings import SettingsError
 
     seen = look(file)
     arena = seen.file.arena

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 from animat.errors import Error
 from animat.life.failure import carried_not_finite, failure_of, not_finite, raised, unknown
+from animat.life.kernels import live_slice
 from animat.life.likelihoods import likelihoods
-from animat.life.setting import LifeError, Setting
-from animat.life.slices import live_slice
+from animat.life.scenario import LifeError, Setting
 from animat.numerics.threads import attempt
 
 LOOK_EVERY = 10_000

@@ -9,17 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 
-from animat.mind.mind import Drive
-from animat.report.figures.life import life_figure
-from animat.report.figures.worlds import RobotDrawing, WorldDrawing
+from animat.figures.life import life_figure
+from animat.figures.worlds import RobotDrawing, WorldDrawing
+from animat.mind.mind import Drive, Mind
 from animat.robot.khepera import REACH, Khepera
 from animat.world.files import WorldFile
 from animat.world.world import World
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from animat.life.life import Life
 
 SPREAD = math.radians(20.0)
 """Half the opening angle a sensor is drawn with; its probes reach 18 mm aside at 40 mm."""
@@ -74,21 +72,24 @@ def _need(drive: Drive) -> str:
 
 
 def draw_life(
-    life: Life, trace: pa.Table | Iterable[pa.Table], span: tuple[int, int] | None = None
+    trace: pa.Table | Iterable[pa.Table],
+    mind: Mind,
+    world: World,
+    title: str,
+    span: tuple[int, int] | None,
 ) -> Figure:
-    """Return the figure of a life and its trace: needs, drives, behaviours, events and the path.
+    """Return the figure of a life by its trace: needs, drives, behaviours, events and the path.
 
     Of a trace in parts, `span` is its first step and the one after its last.
     """
-    title = f"{life.mind.agent}, {life.world.name}, seed {life.seed}: {life.lifespan:,} steps"
     return life_figure(
         trace,
         span=span,
         set_points={
-            name: variable.set_point for name, variable in life.mind.resolved_variables().items()
+            name: variable.set_point for name, variable in mind.resolved_variables().items()
         },
-        drives=(needs := {name: _need(drive) for name, drive in life.mind.drives.items()}),
-        behaviours={name: needs[one.serves] for name, one in life.mind.behaviours.items()},
-        world=world_drawing(life.world, life.world.name),
-        title=title if life.death is None else f"{title}, died of {life.death}",
+        drives=(needs := {name: _need(drive) for name, drive in mind.drives.items()}),
+        behaviours={name: needs[one.serves] for name, one in mind.behaviours.items()},
+        world=world_drawing(world, world.name),
+        title=title,
     )

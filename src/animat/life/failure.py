@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from animat.life.setting import LifeError, Setting
+from animat.life.scenario import LifeError, Setting
 from animat.mind.functions import Functions
 from animat.numerics.compiled import compiled
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -12,17 +12,17 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from animat.arguments import MOST_63, MOST_64, callback, instance, whole
+from animat.files.tables import to_pandas, write_csv
+from animat.files.validation_errors import brief
 from animat.life.batch import Progress, advance, failure
 from animat.life.digest import digest
 from animat.life.failure import FailedLifeError
-from animat.life.setting import LifeError, Setting, bring_together
-from animat.life.slices import live_recorded
+from animat.life.kernels import live_recorded
+from animat.life.scenario import LifeError, Setting, bring_together
 from animat.life.summary import death_of, summary
-from animat.life.table_files import to_pandas, write_csv
 from animat.life.trace import row_dtype, table
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
-from animat.mistakes import brief
 from animat.numerics.threads import attempt
 from animat.robot.khepera import Khepera
 from animat.world.world import World
@@ -121,9 +121,21 @@ class Life:
         """
         if self.trace is None or not self.trace.num_rows:
             raise LifeError('no step of this life was recorded: live it with record="all"')
+        return self.drawn(self.trace)
+
+    def drawn(
+        self, trace: pa.Table | Iterable[pa.Table], span: tuple[int, int] | None = None
+    ) -> Figure:
+        """Draw a trace of this life that it does not hold itself.
+
+        Of a trace in parts, `span` is its first step and the one after its last.
+        """
         from animat.life.drawing import draw_life
 
-        return draw_life(self, self.trace)
+        title = f"{self.mind.agent}, {self.world.name}, seed {self.seed}: {self.lifespan:,} steps"
+        if self.death is not None:
+            title += f", died of {self.death}"
+        return draw_life(trace, self.mind, self.world, title, span)
 
 
 class Moment(NamedTuple):

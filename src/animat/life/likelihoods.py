@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from animat.life.setting import Setting
+from animat.life.scenario import Setting
 from animat.mind import affordance
 from animat.numerics.compiled import kernel
 from animat.numerics.threads import attempt

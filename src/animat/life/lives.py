@@ -18,11 +18,11 @@ import pyarrow.compute as pc
 from numpy.typing import NDArray
 
 from animat.arguments import MOST_63, callback, instance, sequence, whole
+from animat.files.tables import to_pandas, write_csv
 from animat.life.batch import Batch, Progress
 from animat.life.life import check
-from animat.life.setting import LifeError, Setting, bring_together
+from animat.life.scenario import LifeError, Setting, bring_together
 from animat.life.summary import NAMES, summary, without_failed
-from animat.life.table_files import to_pandas, write_csv
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
 from animat.numerics.threads import KernelThreads
@@ -32,8 +32,8 @@ from animat.world.world import World
 if TYPE_CHECKING:
     import pandas as pd
 
-    from animat.report.estimates import Estimate
-    from animat.report.survival import DeathCount
+    from animat.statistics.estimates import Estimate
+    from animat.statistics.survival import DeathCount
 
 CHUNK, LARGEST_CHUNK = 32, 8192
 """Lives that a thread takes at a time: at least, and at most where lives are short."""
@@ -81,7 +81,7 @@ class Lives:
 
         Raises LifeError if every life failed.
         """
-        from animat.report.survival import mean_lifespan
+        from animat.statistics.survival import mean_lifespan
 
         return mean_lifespan(self._whole())
 
@@ -90,7 +90,7 @@ class Lives:
 
         Raises LifeError if every life failed.
         """
-        from animat.report.survival import causes
+        from animat.statistics.survival import causes
 
         return causes(self._whole())
 

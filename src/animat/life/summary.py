@@ -14,7 +14,7 @@ from animat.mind.mind import Mind
 from animat.names import LIVES, spelled
 
 if TYPE_CHECKING:
-    from animat.life.setting import Setting
+    from animat.life.scenario import Setting
 
 CAUSES = {METABOLISM: "metabolism", SUCCESS: "success", FAILURE: "failure"}
 SIDES = ("low", "high")

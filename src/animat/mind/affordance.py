@@ -11,11 +11,17 @@ An estimator has the signature `estimate(features, weights, hidden) -> likelihoo
 
 from __future__ import annotations
 
+from typing import Any
+
 from animat.numerics.compiled import compiled
 from animat.numerics.elementary import logistic
 
 FEED_FORWARD, CUSTOM_ESTIMATOR = range(2)
 BACK_PROPAGATION, CUSTOM_LEARNER = range(2)
+
+ESTIMATORS: dict[Any, int] = {"feed_forward": FEED_FORWARD}
+LEARNERS: dict[Any, int] = {"back_propagation": BACK_PROPAGATION}
+"""The code of each built-in estimator and learner, by its name."""
 
 
 def weight_count(features: int, hidden: int) -> int:

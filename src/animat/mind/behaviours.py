@@ -14,12 +14,17 @@ in motor units. It returns the two motor commands.
 
 from __future__ import annotations
 
+from typing import Any
+
 from animat.numerics.compiled import compiled
 
 WANDER, APPROACH, ACT, LEAVE = range(4)
 """What the robot is doing; ACT stands for the behaviour that was chosen."""
 
 CURVED_WANDER, CUSTOM_WANDER = range(2)
+
+WANDERERS: dict[Any, int] = {"curved": CURVED_WANDER}
+"""The code of each built-in wander controller, by its name."""
 
 ALARM = 250
 """A reading above this turns the robot away; about 40 mm from a wall with `michel1996`."""

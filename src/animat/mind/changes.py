@@ -17,7 +17,7 @@ from pydantic import (
     WrapValidator,
 )
 
-from animat.settings import nearest
+from animat.files.settings import nearest
 
 
 class Complete(dict[str, Any]):

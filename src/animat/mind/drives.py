@@ -17,6 +17,9 @@ from animat.numerics.compiled import compiled
 
 SIGNED, RECTIFIED, ABSOLUTE, CUSTOM_DRIVES = range(4)
 
+ERRORS = {"signed": SIGNED, "rectified": RECTIFIED, "absolute": ABSOLUTE}
+"""The code of each reading of the error, by its name."""
+
 
 @compiled
 def signed(values, changes, set_points, senses, a, b, out):

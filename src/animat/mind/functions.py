@@ -18,11 +18,11 @@ from weakref import WeakKeyDictionary
 from numba import types
 from numba.core.dispatcher import Dispatcher
 
+from animat.files.settings import SettingsError
 from animat.mind.loading import load
 from animat.numerics.checked import SelfCallError, checked
 from animat.numerics.compiled import compiled
 from animat.numerics.snapshot import share_identity, snapshot
-from animat.settings import SettingsError
 
 SIGNATURES = {
     "law": "law(value, low, high, rate, factor) -> value",

@@ -11,10 +11,19 @@ Equation 1 of the paper is printed as growth and equation 2 as its decay; both a
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from animat.numerics.compiled import compiled
 
 DECAY, RELAX, GROWTH, LINEAR_FALL, LINEAR_RISE, CUSTOM_LAW = range(6)
+
+LAWS: dict[Any, int] = {
+    "decay": DECAY,
+    "relax": RELAX,
+    "growth": GROWTH,
+    "linear": LINEAR_FALL,
+}
+"""The code of each built-in law, by its name; `linear` falls or rises with the kind."""
 
 ALIVE, METABOLISM, SUCCESS, FAILURE = range(4)
 """What took a variable out of its viability zone."""

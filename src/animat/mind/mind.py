@@ -8,16 +8,18 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from animat.arguments import whole
-from animat.mind.affordance import weight_count
+from animat.files.settings import Settings, SettingsError, nearest
+from animat.files.validation_errors import plain
+from animat.mind.affordance import ESTIMATORS, LEARNERS, weight_count
 from animat.mind.agents import AGENTS, Agent
+from animat.mind.behaviours import WANDERERS
 from animat.mind.changes import Complete, changing, removing
 from animat.mind.functions import BUILT_IN, Functions, resolve
+from animat.mind.homeostasis import LAWS
 from animat.mind.networks import MOST_HIDDEN, Networks
-from animat.mind.parameters import ESTIMATORS, LAWS, LEARNERS, SELECTORS, WANDERERS
 from animat.mind.physiology import PHYSIOLOGIES, Kind, Variable
-from animat.mistakes import plain
+from animat.mind.selection import SELECTORS
 from animat.names import KEPT, MODES, TRACE, WHICH, name_problems
-from animat.settings import Settings, SettingsError, nearest
 
 Unit = Annotated[float, Field(ge=0.0, le=1.0)]
 

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animat.arguments import instance, real, reals, sequence, whole
+from animat.files.settings import SettingsError, nearest
+from animat.files.validation_errors import plain
 from animat.mind.affordance import feed_forward, weight_count
 from animat.mind.networks_file import read_networks_file, write_networks_file
-from animat.mistakes import plain
 from animat.names import name_problems
 from animat.numerics.compiled import kernel
-from animat.settings import SettingsError, nearest
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -115,7 +115,7 @@ class Networks:
         `{kind.name: kind.features for kind in world.types}`. Raises ValueError where these are not
         the features the networks know.
         """
-        from animat.report.figures.networks import SURFACE, networks_figure
+        from animat.figures.networks import SURFACE, networks_figure
 
         named = {name: dict(features) for name, features in (objects or {}).items()}
         said = [list(self.likelihoods(features).values()) for features in named.values()]

@@ -26,9 +26,9 @@ import tomli_w
 from numpy.typing import NDArray
 from pydantic import Field, ValidationError, model_validator
 
-from animat.files import write_whole
-from animat.mistakes import plain, written
-from animat.settings import Settings, SettingsError, explain, parse_toml, validated
+from animat.files.atomic import write_whole
+from animat.files.settings import Settings, SettingsError, explain, parse_toml, validated
+from animat.files.validation_errors import plain, written
 
 FORMAT = 1
 """Raised by 1 with every change after which an earlier version cannot read a file."""

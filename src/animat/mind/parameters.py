@@ -4,38 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from animat.files.settings import nearest
 from animat.mind import affordance, behaviours, drives, homeostasis, selection
+from animat.mind.mind import Mind
 from animat.mind.physiology import Variable
 from animat.numerics.compiled import kernel
 from animat.numerics.elementary import exponential
-from animat.settings import nearest
-
-if TYPE_CHECKING:
-    from animat.mind.mind import Mind
-
-LAWS: dict[Any, int] = {
-    "decay": homeostasis.DECAY,
-    "relax": homeostasis.RELAX,
-    "growth": homeostasis.GROWTH,
-    "linear": homeostasis.LINEAR_FALL,
-}
-ERRORS = {
-    "signed": drives.SIGNED,
-    "rectified": drives.RECTIFIED,
-    "absolute": drives.ABSOLUTE,
-}
-SELECTORS: dict[Any, int] = {
-    "winner_take_all": selection.WINNER_TAKE_ALL,
-    "affordance_times_drive": selection.AFFORDANCE_TIMES_DRIVE,
-    "random": selection.RANDOM,
-}
-ESTIMATORS: dict[Any, int] = {"feed_forward": affordance.FEED_FORWARD}
-LEARNERS: dict[Any, int] = {"back_propagation": affordance.BACK_PROPAGATION}
-WANDERERS: dict[Any, int] = {"curved": behaviours.CURVED_WANDER}
 
 SHARED = (
     "likelihood_threshold",
@@ -144,12 +121,16 @@ def parameters(mind: Mind, affordances: Sequence[str]) -> np.record:
             for moved, relief in effects.items():
                 v = names.index(moved)
                 row[v] = relief * record.sense[v]
-    record.error = drives.CUSTOM_DRIVES if mind.drive_function is not None else ERRORS[mind.error]
+    record.error = (
+        drives.CUSTOM_DRIVES if mind.drive_function is not None else drives.ERRORS[mind.error]
+    )
     selector = mind.nature.selector if mind.selector is None else mind.selector
-    record.selector = SELECTORS.get(selector, selection.CUSTOM_SELECTOR)
-    record.estimator = ESTIMATORS.get(mind.learning.estimator, affordance.CUSTOM_ESTIMATOR)
-    record.learner = LEARNERS.get(mind.learning.learner, affordance.CUSTOM_LEARNER)
-    record.wander = WANDERERS.get(mind.wander, behaviours.CUSTOM_WANDER)
+    record.selector = selection.SELECTORS.get(selector, selection.CUSTOM_SELECTOR)
+    record.estimator = affordance.ESTIMATORS.get(
+        mind.learning.estimator, affordance.CUSTOM_ESTIMATOR
+    )
+    record.learner = affordance.LEARNERS.get(mind.learning.learner, affordance.CUSTOM_LEARNER)
+    record.wander = behaviours.WANDERERS.get(mind.wander, behaviours.CUSTOM_WANDER)
     record.gated = mind.gate == "positive"
     record.judge = mind.nature.judge
     record.learns = mind.nature.learns
@@ -172,7 +153,7 @@ def shrink(rates, factors):
 
 def _fill_variable(record: np.record, v: int, variable: Variable, mind: Mind) -> None:
     deficit = variable.is_deficit
-    law = LAWS.get(variable.law, homeostasis.CUSTOM_LAW)
+    law = homeostasis.LAWS.get(variable.law, homeostasis.CUSTOM_LAW)
     if law == homeostasis.LINEAR_FALL and not deficit:
         law = homeostasis.LINEAR_RISE
     record.law[v] = law

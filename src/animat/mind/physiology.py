@@ -12,8 +12,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from animat.mistakes import plain
-from animat.settings import Settings, nearest
+from animat.files.settings import Settings, nearest
+from animat.files.validation_errors import plain
 
 Kind = Literal["deficit", "excess"]
 

@@ -8,10 +8,19 @@ none. Any other number fails the life.
 
 from __future__ import annotations
 
+from typing import Any
+
 from animat.mind.drives import strongest
 from animat.numerics.compiled import compiled
 
 WINNER_TAKE_ALL, AFFORDANCE_TIMES_DRIVE, RANDOM, CUSTOM_SELECTOR = range(4)
+
+SELECTORS: dict[Any, int] = {
+    "winner_take_all": WINNER_TAKE_ALL,
+    "affordance_times_drive": AFFORDANCE_TIMES_DRIVE,
+    "random": RANDOM,
+}
+"""The code of each built-in selector, by its name."""
 
 
 @compiled

@@ -31,9 +31,9 @@ from numba.core import config, utils
 from numba.core.caching import FunctionCache
 from numba.core.event import Event, Listener, register
 
+from animat.files.settings import SettingsError
 from animat.numerics.identity import STEP_OPTIONS
 from animat.numerics.inlined import inlined
-from animat.settings import SettingsError
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

@@ -19,10 +19,10 @@ from numba.core.dispatcher import Dispatcher
 from numba.core.registry import cpu_target
 from numba.np.ufunc.dufunc import DUFunc
 
+from animat.files.settings import SettingsError
 from animat.numerics.compiled import compiled
 from animat.numerics.identity import STEP_OPTIONS, Identity, identity
 from animat.numerics.taken import in_library, library_name, python_function, taken
-from animat.settings import SettingsError
 
 _SNAPSHOTS: dict[Identity, Any] = {}
 _IDENTITIES: WeakKeyDictionary[Any, Identity] = WeakKeyDictionary()

@@ -6,16 +6,16 @@ from typing import TypeVar
 
 import numpy as np
 
-from animat.report.estimates import Estimate, share
-from animat.report.figures.causes import causes_figure
-from animat.report.figures.margins import margins_figure
-from animat.report.figures.style import spread_out
-from animat.report.figures.survival import level_curves_figure
-from animat.report.figures.trend import trend_figure
-from animat.report.levels import Level
-from animat.report.margins import Comparison, Margin
+from animat.figures.causes import causes_figure
+from animat.figures.margins import margins_figure
+from animat.figures.style import spread_out
+from animat.figures.survival import level_curves_figure
+from animat.figures.trend import trend_figure
 from animat.report.page import NOT_KNOWN, Picture, TableBlock, interval, p_value, picture
-from animat.report.sample import Sample, case_means
+from animat.statistics.estimates import Estimate, share
+from animat.statistics.factor_effects import Comparison, Margin
+from animat.statistics.levels import Level
+from animat.statistics.sample import Sample, case_means
 
 T = TypeVar("T")
 

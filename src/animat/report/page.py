@@ -14,11 +14,11 @@ from pathlib import Path
 from jinja2 import Environment, StrictUndefined
 from matplotlib.figure import Figure
 
-from animat.files import write_whole
-from animat.report.claims import Claim, Part, Verdict
-from animat.report.estimates import LEVEL, Estimate
-from animat.report.figures.style import png, svg
-from animat.report.survival import CellSummary
+from animat.figures.style import png, svg
+from animat.files.atomic import write_whole
+from animat.statistics.claims import Claim, Part, Verdict
+from animat.statistics.estimates import LEVEL, Estimate
+from animat.statistics.survival import CellSummary
 
 PAPER = (
     "Cos-Aguilera, I., Cañamero, L. and Hayes, G. M. (2003). Motivation-Driven Learning of "

@@ -15,13 +15,13 @@ from animat.report.blocks import (
     measures_table,
     trend_picture,
 )
-from animat.report.estimates import LEVEL
-from animat.report.findings import Findings
-from animat.report.levels import Level
-from animat.report.margins import Margin
-from animat.report.numerals import shortened
+from animat.report.interaction_sections import interaction_sections, interactions_in_short
 from animat.report.page import Picture, Section, TableBlock, interval, p_value
-from animat.report.two_factor_sections import interaction_sections, interactions_in_short
+from animat.statistics.estimates import LEVEL
+from animat.statistics.factor_effects import Margin
+from animat.statistics.findings import Findings
+from animat.statistics.levels import Level
+from animat.statistics.numerals import shortened
 
 NOBODY_DIED = (
     "No life ended before its cap, so lifespans tell nothing apart here, and are not compared."

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from animat.files.settings import Settings
 from animat.numerics.compiled import kernel
 from animat.numerics.elementary import sine_cosine
-from animat.settings import Settings
 
 SENSORS = 8
 RING_POINTS = 8

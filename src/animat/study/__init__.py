@@ -14,28 +14,30 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from animat.study.design.design import Case, Design, Excluded, cases, excluded
-    from animat.study.design.settings import CaseSettings, LifeSettings, Teacher, WorldChoice
-    from animat.study.design.shipped import study_file
-    from animat.study.design.study import Study, read_study
+    from animat.study.file.builtin import study_file
+    from animat.study.file.cases import Case, Excluded, cases, excluded
+    from animat.study.file.design import Design
+    from animat.study.file.read import read_study
+    from animat.study.file.settings import CaseSettings, LifeSettings, Teacher, WorldChoice
+    from animat.study.file.study import Study
     from animat.study.store.results import Results
     from animat.study.store.results import open as open  # noqa: A004
 
 _HOMES = {
-    "Case": "animat.study.design.design",
-    "CaseSettings": "animat.study.design.settings",
-    "Design": "animat.study.design.design",
-    "Excluded": "animat.study.design.design",
-    "LifeSettings": "animat.study.design.settings",
+    "Case": "animat.study.file.cases",
+    "CaseSettings": "animat.study.file.settings",
+    "Design": "animat.study.file.design",
+    "Excluded": "animat.study.file.cases",
+    "LifeSettings": "animat.study.file.settings",
     "Results": "animat.study.store.results",
-    "Study": "animat.study.design.study",
-    "Teacher": "animat.study.design.settings",
-    "WorldChoice": "animat.study.design.settings",
-    "cases": "animat.study.design.design",
-    "excluded": "animat.study.design.design",
+    "Study": "animat.study.file.study",
+    "Teacher": "animat.study.file.settings",
+    "WorldChoice": "animat.study.file.settings",
+    "cases": "animat.study.file.cases",
+    "excluded": "animat.study.file.cases",
     "open": "animat.study.store.results",
-    "read_study": "animat.study.design.study",
-    "study_file": "animat.study.design.shipped",
+    "read_study": "animat.study.file.read",
+    "study_file": "animat.study.file.builtin",
 }
 
 __all__ = [

@@ -6,7 +6,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from animat.settings import Settings
+from animat.files.settings import Settings
 
 LONGEST = 1e7
 """mm; 10 km, more than a raster can hold."""

@@ -31,9 +31,9 @@ from typing import Annotated
 import tomli_w
 from pydantic import AfterValidator, Field, ValidationInfo
 
-from animat.files import write_whole
+from animat.files.atomic import write_whole
+from animat.files.settings import Settings, SettingsError, nearest, read_toml
 from animat.names import malformed
-from animat.settings import Settings, SettingsError, nearest, read_toml
 from animat.world.arena import Arena
 from animat.world.layout import MINIMUM_GAP, Layout, Placement
 from animat.world.objects import TABLE_1, ObjectType

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from animat.arguments import instance, real, sequence
+from animat.files.settings import Settings, SettingsError, nearest
 from animat.numerics.compiled import kernel
-from animat.settings import Settings, SettingsError, nearest
 from animat.world.arena import Arena
 from animat.world.geometry import Outlines, packed, polygon_gap, signed_distance
 from animat.world.objects import TABLE_1, ObjectType

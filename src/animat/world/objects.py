@@ -16,8 +16,8 @@ from pydantic import (
     model_validator,
 )
 
+from animat.files.settings import Settings, nearest
 from animat.names import MARKS, malformed, name_problems
-from animat.settings import Settings, nearest
 from animat.world.arena import LONGEST
 from animat.world.shapes import FEWEST_SIDES, MOST_SIDES, SIDES, polygon
 

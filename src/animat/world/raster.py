@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.files.settings import SettingsError
 from animat.numerics.compiled import kernel
-from animat.settings import SettingsError
 from animat.world.arena import Arena
 from animat.world.geometry import Outlines, signed_distance
 

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animat.arguments import MOST_64, instance, real, sequence, whole
-from animat.mistakes import brief
+from animat.files.settings import nearest
+from animat.files.validation_errors import brief
 from animat.numerics.compiled import compiled, kernel
 from animat.numerics.elementary import sine_cosine
 from animat.numerics.streams import LAYOUT, uniforms
-from animat.settings import nearest
 from animat.world.arena import Arena
 from animat.world.geometry import Outlines, packed, polygon_gap
 from animat.world.layout import MOST_SITES, TOUCHING, Layout, LayoutError, Placement

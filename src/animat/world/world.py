@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from animat import arguments
 from animat.arguments import instance, real, whole
-from animat.mistakes import brief
+from animat.files.settings import SettingsError
+from animat.files.validation_errors import brief
 from animat.names import malformed
-from animat.settings import SettingsError
 from animat.world.arena import Arena
 from animat.world.files import read_world, write_world
 from animat.world.layout import MINIMUM_GAP, Layout, LayoutError

@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 import xarray as xr
 
-from animat.settings import SettingsError
+from animat.files.settings import SettingsError
 from animat.study.store.export import export
 from animat.study.store.results import Results
 

@@ -19,8 +19,8 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
-from animat.study import provenance
-from animat.study.store import lock, log
+from animat.files import lock, provenance
+from animat.study.store import log
 from animat.study.store.status import status
 
 pytestmark = pytest.mark.long

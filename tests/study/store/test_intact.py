@@ -10,8 +10,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from animat.settings import SettingsError
-from animat.study.living.numbering import Part
+from animat.files.settings import SettingsError
+from animat.study.plan.numbering import Part
 from animat.study.store.export import export
 from animat.study.store.results import Results
 from animat.study.store.status import status

@@ -9,7 +9,7 @@ import pyarrow.compute as pc
 import pytest
 
 import animat.study
-from animat.settings import SettingsError
+from animat.files.settings import SettingsError
 from animat.study.store.results import Results
 
 SHARED = """

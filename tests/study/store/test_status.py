@@ -7,7 +7,7 @@ import shutil
 
 import pytest
 
-from animat.study.store.lock import hold
+from animat.files.lock import hold
 from animat.study.store.log import logging_to
 from animat.study.store.results import Results
 from animat.study.store.status import status

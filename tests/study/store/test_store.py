@@ -9,12 +9,13 @@ import tomllib
 import pyarrow.parquet as pq
 import pytest
 
-from animat.settings import SettingsError
-from animat.study.living.numbering import Part
-from animat.study.living.plan import plan_of
-from animat.study.store import lock, store
-from animat.study.store.description import read_manifest, text_hash
-from animat.study.store.lock import HeldError
+from animat.files import lock
+from animat.files.lock import HeldError
+from animat.files.settings import SettingsError
+from animat.study.plan.numbering import Part
+from animat.study.plan.plan import plan_of
+from animat.study.store import store
+from animat.study.store.manifest import read_manifest, text_hash
 from animat.study.store.store import StoreError, open_store
 
 

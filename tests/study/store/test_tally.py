@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from animat.study.living.numbering import Numbering, Part
+from animat.study.plan.numbering import Numbering, Part
 from animat.study.store.tally import Counts, Tally
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from animat.mistakes import plain, written
+from animat.files.validation_errors import plain, written
 
 NOTHING = "nothing"
 

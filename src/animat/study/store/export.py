@@ -15,9 +15,9 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from animat.files import check_writable, whole
-from animat.life.table_files import write_tables
-from animat.settings import SettingsError
+from animat.files.atomic import check_writable, whole
+from animat.files.settings import SettingsError
+from animat.files.tables import write_tables
 from animat.study.store.results import Results
 
 if TYPE_CHECKING:

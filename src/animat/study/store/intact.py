@@ -16,14 +16,14 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from animat.settings import SettingsError
-from animat.study.design.design import cases as cases_of
-from animat.study.design.study import Study
-from animat.study.living.numbering import Kind, Numbering, Part
-from animat.study.living.parts import identity_of
-from animat.study.living.plan import case_table
-from animat.study.living.seal import LIVED_AGAIN, wrong_with
-from animat.study.store.description import CASES, COLUMNS, WRITTEN_ANEW
+from animat.files.checksummed_table import LIVED_AGAIN, wrong_with
+from animat.files.settings import SettingsError
+from animat.study.file.cases import cases as cases_of
+from animat.study.file.study import Study
+from animat.study.plan.numbering import Kind, Numbering, Part
+from animat.study.plan.plan import case_table
+from animat.study.plan.shard import identity_of
+from animat.study.store.manifest import CASES, COLUMNS, WRITTEN_ANEW
 
 Stamp = tuple[int, int]
 

@@ -23,14 +23,14 @@ from pydantic import ValidationError
 
 from animat import arguments
 from animat.arguments import MOST_63, instance, sequence, whole
-from animat.life.table_files import to_pandas
-from animat.mistakes import brief
-from animat.settings import SettingsError, explain, nearest, parse_text, validated
-from animat.study.design.study import Study
-from animat.study.living.numbering import KINDS, Kind, Numbering, Part
-from animat.study.living.seal import Seal, seal_of
-from animat.study.store.description import read_cases, read_columns, read_manifest, read_text
+from animat.files.checksummed_table import Seal, seal_of
+from animat.files.settings import SettingsError, explain, nearest, parse_text, validated
+from animat.files.tables import to_pandas
+from animat.files.validation_errors import brief
+from animat.study.file.study import Study
+from animat.study.plan.numbering import KINDS, Kind, Numbering, Part
 from animat.study.store.intact import Intact
+from animat.study.store.manifest import read_cases, read_columns, read_manifest, read_text
 from animat.study.store.tally import Tally
 
 if TYPE_CHECKING:

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from animat.study.store.lock import holder
+from animat.files.lock import holder
+from animat.study.store.eta import Pace
 from animat.study.store.log import entries
-from animat.study.store.pace import Pace
 from animat.study.store.results import Results
 from animat.study.store.store import LOCK, LOG
 

@@ -16,16 +16,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from animat.files import RunError, sync_directory, unwritable, write_whole
-from animat.settings import SettingsError
-from animat.study.living.numbering import Part
-from animat.study.living.parts import Made, file_names, part_identity
-from animat.study.living.plan import Plan
-from animat.study.living.seal import OTHERS, Seal, seal_of
-from animat.study.living.teachers import read_networks
-from animat.study.store.description import CASES, FOLDERS, MANIFEST, STUDY, begin
-from animat.study.store.lock import Holder, hold
+from animat.files.atomic import RunError, sync_directory, unwritable, write_whole
+from animat.files.checksummed_table import OTHERS, Seal, seal_of
+from animat.files.lock import Holder, hold
+from animat.files.settings import SettingsError
+from animat.study.plan.numbering import Part
+from animat.study.plan.plan import Plan
+from animat.study.plan.shard import Made, file_names, part_identity
+from animat.study.plan.training import read_networks
 from animat.study.store.log import Log, logging_to
+from animat.study.store.manifest import CASES, FOLDERS, MANIFEST, STUDY, begin
 
 LOCK, LOG = "lock", "log.jsonl"
 

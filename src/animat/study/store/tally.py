@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from animat.study.living.numbering import KINDS, Kind, Numbering, Part
+from animat.study.plan.numbering import KINDS, Kind, Numbering, Part
 
 
 @dataclass

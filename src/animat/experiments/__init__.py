@@ -1,0 +1,1 @@
+"""The experiments: the reproduction of the paper, its multiverse, its sensitivity."""

@@ -1,1 +1,0 @@
-"""Which of the paper's claims hold in which readings of it: from tables of many universes."""

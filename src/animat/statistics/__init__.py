@@ -1,0 +1,1 @@
+"""Statistics of tables of lives: resampling, survival, effects, claims, factors."""

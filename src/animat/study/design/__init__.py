@@ -1,1 +1,0 @@
-"""What a study is: the file that describes it, its design, and its cases."""

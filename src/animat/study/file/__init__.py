@@ -1,0 +1,1 @@
+"""Study files: what a study is, checked where it enters."""

@@ -1,1 +1,0 @@
-"""What the page on a study says of how it was asked and run."""

@@ -1,0 +1,180 @@
+"""One page on a results directory."""
+
+import re
+from html.parser import HTMLParser
+
+import pytest
+
+from animat.files.settings import SettingsError
+from animat.report.study_page import NOTHING_YET, write_report
+
+from .small import FAILING, FOUR, ran
+
+
+class Page(HTMLParser):
+    """What a reader finds: text, headings, addresses that would be loaded."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.source = path.read_text("utf-8")
+        self.text, self.loads, self.headings, self.scripts, self.alts = "", [], [], 0, []
+        self.inside = ""
+        self.feed(self.source)
+
+    def handle_starttag(self, tag, attrs):
+        given = dict(attrs)
+        self.inside = tag
+        self.loads += [given[name] for name in ("src", "srcset", "data", "href") if name in given]
+        self.scripts += tag == "script"
+        if tag == "img":
+            self.alts.append(given.get("alt"))
+
+    def handle_data(self, data):
+        self.text += data
+        if self.inside in ("h1", "h2") and data.strip():
+            self.headings.append(data.strip())
+
+
+def silent(*_):
+    pass
+
+
+def reported(results, by=None, out=None):
+    path, short = write_report(results, out, by, silent)
+    return Page(path), short
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    return ran(FOUR, tmp_path_factory.mktemp("four"))
+
+
+@pytest.fixture(scope="module")
+def page(results):
+    return reported(results)[0]
+
+
+def test_the_page_has_all_its_parts(page):
+    assert page.headings == [
+        "Study: four", "What was asked", "How it was run", "All lives", "The cases", "The factors",
+        "world.layout", "mind.agent", "Interactions of two factors", "world.layout by mind.agent",
+        "What the networks learnt", "Methods and citation", "The readings taken",
+        "The study file",
+    ]  # fmt: skip
+
+
+def test_the_page_stands_alone(page):
+    assert all(address.startswith(("data:", "#")) for address in page.loads)
+    assert page.scripts == 0
+    assert len(page.alts) >= 6
+    assert all(page.alts)
+    style = re.sub(r"data:[^\"']*", "", page.source)
+    assert not re.search(r"url\(|@import|fetch\(|https?://", style)
+
+
+def test_its_numbers_are_those_of_the_tables(results, page):
+    lives = results.lives().to_pandas()
+    for agent, rows in lives.groupby("mind.agent", observed=True):
+        mean = f"{rows.lifespan.mean():,.0f}"
+        assert f"{mean} (" in page.text
+        assert re.search(rf"{agent}\s+50\s+{int(rows.censored.sum())}\s+{mean} \(", page.text)
+    rate = lives.acts.sum() and lives.successes.sum() / lives.acts.sum()
+    assert f"{rate:.1%}" in page.text
+
+
+def test_what_a_paper_needs_is_there(page):
+    assert "@misc{cosaguilera2003motivation" in page.text
+    assert "@software{animat" in page.text
+    assert "stratified by the combinations of the other factors" in page.text
+    assert '"mind.agent" = ["BLIND", "AF"]' in page.text
+
+
+def test_robots_that_taught_are_told(page):
+    assert "The 3 robots whose networks AF has" in page.text
+
+
+def test_the_same_results_make_the_same_page(results, page):
+    assert reported(results)[0].source == page.source
+
+
+def test_only_factors_asked_for_are_told(results, tmp_path):
+    page, _ = reported(results, by=["mind.agent"], out=tmp_path / "page.html")
+    assert "mind.agent" in page.headings
+    assert "world.layout" not in page.headings
+
+
+def test_a_factor_that_is_none_is_refused_with_the_nearest(results):
+    with pytest.raises(SettingsError, match=r'--by "mind.agnet": .* did you mean "mind.agent"'):
+        write_report(results, None, ["mind.agnet"], silent)
+
+
+def test_what_is_no_page_of_ours_is_not_replaced(results, tmp_path):
+    mine = tmp_path / "mine.html"
+    mine.write_text("my own work")
+    with pytest.raises(SettingsError, match="is no page of animat"):
+        write_report(results, mine, None, silent)
+    assert mine.read_text() == "my own work"
+    with pytest.raises(SettingsError, match="is a directory"):
+        write_report(results, tmp_path, None, silent)
+
+
+def test_lives_that_failed_are_left_out_and_told(tmp_path):
+    results = ran(FAILING, tmp_path)
+    errors = [one for one in results.lives(["error"])["error"].to_pylist() if one]
+    assert 0 < len(errors) < 24
+    page, short = reported(results)
+    assert f"{len(errors)} lives failed" in short[0]
+    assert errors[0] in page.text
+    assert f"of {24 - len(errors)} lives ended" in page.text
+
+
+def test_a_study_that_still_runs_is_reported_as_far_as_it_is(tmp_path):
+    results = ran(FOUR, tmp_path, without=1)
+    page, short = reported(results)
+    assert short[0].startswith("Not finished")
+    assert page.text.index("Not finished") < page.text.index("What was asked")
+    assert "All lives" in page.headings
+
+
+def test_what_is_finished_meanwhile_is_in_no_number(tmp_path):
+    results = ran(FOUR, tmp_path)
+    (last, *_) = sorted((results.directory / "lives").glob("part-*.parquet"))[::-1]
+    content = last.read_bytes()
+    last.unlink()
+    there = results.progress.done
+    meanwhile = iter(range(4))
+
+    def tell(*_):
+        if next(meanwhile) == 1:
+            last.write_bytes(content)
+
+    path, short = write_report(results, None, None, tell)
+    assert results.progress.done == 100
+    assert short[0].startswith(f"Not finished: {100 - there} of 100 lives")
+    assert f"{there} of 100 finished" in Page(path).text
+
+
+def test_a_study_of_which_nothing_is_finished_says_so(tmp_path):
+    results = ran(FOUR, tmp_path, without=10**6)
+    page, short = reported(results)
+    assert NOTHING_YET in short
+    assert "All lives" not in page.headings
+    assert "Methods and citation" in page.headings
+
+
+def test_robots_that_cannot_die_and_their_learning_are_reported(tmp_path):
+    text = """
+name = "learning"
+lives = 3
+steps = 1_500
+measures = ["likelihoods", "learning_curve"]
+[mind]
+agent = "LEARNING"
+[design.grid]
+"mind.learning.cycles" = [1, 10]
+"""
+    page, short = reported(ran(text, tmp_path))
+    assert short[0].startswith("0 of 6 lives ended, 6 went on at their cap. Acts")
+    assert "What the networks learnt" in page.headings
+    assert "mind.learning.cycles = 10" in page.text
+    assert "eat TS" in page.text

@@ -1,0 +1,112 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import stats
+
+from animat.statistics import estimates
+from animat.statistics.estimates import BCA_LIMIT, bootstrapped, mean, ratio_of_means, share
+
+
+@given(total=st.integers(1, 2000), data=st.data())
+def test_a_share_has_wilsons_interval(total, data):
+    count = data.draw(st.integers(0, total))
+    z = stats.norm.ppf(0.975)
+    p = count / total
+    centre = (p + z * z / (2 * total)) / (1 + z * z / total)
+    half = z * np.sqrt(p * (1 - p) / total + z * z / (4 * total * total)) / (1 + z * z / total)
+    got = share(count, total)
+    assert got.value == p
+    np.testing.assert_allclose([got.low, got.high], [centre - half, centre + half], atol=1e-12)
+
+
+def test_a_share_of_nothing_is_unknown():
+    assert np.isnan(share(0, 0)).all()
+
+
+def test_the_mean_of_a_large_normal_sample_has_the_textbook_interval():
+    values = np.random.default_rng(1).normal(10.0, 2.0, 10_000)
+    half = stats.norm.ppf(0.975) * values.std(ddof=1) / 100
+    got = mean(values)
+    assert got.value == values.mean()
+    assert got.high - got.low == pytest.approx(2 * half, rel=0.05)
+    assert (got.high + got.low) / 2 == pytest.approx(got.value, abs=0.1 * half)
+
+
+def test_the_interval_covers_the_mean_of_a_skewed_law_about_as_often_as_it_says():
+    rng = np.random.default_rng(5)
+    covered = 0
+    for trial in range(150):
+        got = mean(rng.exponential(1.0, 60), seed=trial, resamples=499)
+        covered += got.low <= 1.0 <= got.high
+    # 95 % of 150 is 142; fewer than 132 would happen once in some 10,000 times.
+    assert covered >= 132
+
+
+def test_bca_moves_a_skewed_interval_to_the_long_tail():
+    values = np.random.default_rng(2).exponential(1.0, 40)
+    bca = mean(values, method="BCa")
+    plain = mean(values, method="percentile")
+    assert bca.low > plain.low
+    assert bca.high > plain.high
+
+
+def test_bca_serves_samples_up_to_its_limit_and_percentiles_larger_ones():
+    rng = np.random.default_rng(3)
+    small, large = rng.exponential(1.0, BCA_LIMIT), rng.exponential(1.0, BCA_LIMIT + 1)
+    assert mean(small, resamples=199) == mean(small, resamples=199, method="BCa")
+    assert mean(small, resamples=199) != mean(small, resamples=199, method="percentile")
+    assert mean(large, resamples=199) == mean(large, resamples=199, method="percentile")
+
+
+def test_the_same_seed_gives_the_same_interval_and_another_seed_another():
+    values = np.random.default_rng(4).normal(0.0, 1.0, 200)
+    assert mean(values, seed=1, resamples=199) == mean(values, seed=1, resamples=199)
+    assert mean(values, seed=1, resamples=199) != mean(values, seed=2, resamples=199)
+
+
+def test_the_batches_do_not_show_in_the_interval(monkeypatch):
+    values = np.random.default_rng(4).normal(0.0, 1.0, 200)
+    whole = mean(values, resamples=500)
+    monkeypatch.setattr(estimates, "_BATCH_NUMBERS", 3_000)
+    cut = mean(values, resamples=500)
+    np.testing.assert_allclose(cut, whole, rtol=1e-12)
+
+
+def test_shared_luck_narrows_the_interval_of_a_ratio():
+    luck = np.random.default_rng(6).exponential(1000.0, 300)
+    twice = 2 * luck + np.random.default_rng(7).normal(0.0, 1.0, 300)
+    paired = ratio_of_means(twice, luck, paired=True)
+    unpaired = ratio_of_means(twice, luck, paired=False)
+    assert paired.value == unpaired.value == pytest.approx(2.0, abs=0.01)
+    assert paired.high - paired.low < 0.01
+    assert unpaired.high - unpaired.low > 0.3
+
+
+def test_a_ratio_to_nothing_is_refused():
+    with pytest.raises(ValueError, match="denominator of 0"):
+        ratio_of_means(np.ones(3), np.zeros(3), paired=True)
+
+
+def test_what_does_not_vary_has_no_width():
+    assert mean(np.full(20, 5.0)) == (5.0, 5.0, 5.0)
+
+
+@pytest.mark.parametrize("other", [[1.0, 3.0], [2.0, 2.0], [2.0]])
+def test_one_value_has_no_interval_whatever_the_other_sample(other):
+    got = ratio_of_means(np.array([4.0]), np.array(other), paired=False)
+    assert got.value == 2.0
+    assert np.isnan([got.low, got.high]).all()
+
+
+def test_where_bca_has_no_answer_percentiles_give_one():
+    # The median of this sample is its largest value in every resample that matters to BCa.
+    values = np.array([0.0] * 2 + [1.0] * 30)
+    got = bootstrapped([values], np.max, method="BCa")
+    assert np.isfinite(got).all()
+    assert got.high == 1.0
+
+
+def test_an_empty_sample_is_refused():
+    with pytest.raises(ValueError, match="at least one value"):
+        mean(np.array([]))
