@@ -131,5 +131,5 @@ def test_what_cannot_be_shown_is_no_name_anywhere(name):
 @pytest.mark.parametrize("name", [n for n in (*LIVES, *OF_A_STUDY) if "{" not in n])
 def test_no_factor_is_called_like_a_column(name):
     grid: Any = {name: {"one": {"mind.agent": "BLIND"}, "two": {"mind.agent": "ORACLE"}}}
-    with pytest.raises(SettingsError, match=f"is called like the column {name} of a table"):
+    with pytest.raises(SettingsError, match=f"like the column {name} of a table|is a section"):
         cases(Study(name="s", design=Design(grid=grid)))

@@ -64,7 +64,6 @@ def test_networks_are_equal_if_names_and_weights_are():
         (3, np.zeros((2, 9))),
         (2, np.zeros((1, 9))),
         (2, np.zeros(18)),
-        (0, np.zeros((2, 1))),
     ],
 )
 def test_weights_that_do_not_fit_are_refused(hidden, weights):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
@@ -157,3 +158,32 @@ def test_a_file_that_cannot_be_read_to_its_end_is_told_of(finished, tmp_path):
     for read in (results.lives, results.teachers, results.traces, results.curves):
         with pytest.raises(SettingsError, match=r"-000000\.parquet: (has changed|is torn)"):
             read()
+
+
+WRONG = [
+    None, True, -1, 0, 1.5, 10**30, "", "nope", b"case", [1], ["nope"], [None], {"nope"}, {1, "a"},
+    {}, object(), np.array(["case"]), pc.field("nope") > 1, pc.field("lifespan") > "x",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("method", "argument"),
+    [
+        ("dataset", "kind"),
+        ("lives", "columns"),
+        ("lives", "where"),
+        ("batches", "columns"),
+        ("curves", "kind"),
+        ("failures", "count"),
+    ],
+)
+def test_whatever_is_wrong_is_refused_in_one_line(shared, method, argument):
+    refused = 0
+    for value in WRONG:
+        try:
+            found = getattr(shared, method)(**{argument: value})
+            if method == "batches":
+                list(found)
+        except animat.Error as error:
+            refused += all(error.problems)
+    assert refused >= 12

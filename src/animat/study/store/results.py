@@ -149,7 +149,7 @@ class Results:
             instance("where", where, pc.Expression)
         needed = None if where is not None else {*wanted, "case", "life"}
         batches = [
-            batch if where is None else batch.filter(where) for batch in self.batches(needed)
+            batch if where is None else _filtered(batch, where) for batch in self.batches(needed)
         ]
         table = pa.concat_tables(batches).unify_dictionaries()
         return _in_order(table).select(wanted).combine_chunks()
@@ -157,12 +157,12 @@ class Results:
     def batches(self, columns: set[str] | None = None) -> Iterator[pa.Table]:
         """Yield lives with the factors of their cases, some thousands at a time, at least once.
 
-        They come in the order in which they are numbered. `columns` must have `case`.
+        They come in the order in which they are numbered, `case` always among the columns.
         """
         dataset = self.dataset()
         if columns is not None:
-            instance("columns", columns, Set)
-            self._checked(sorted(columns))
+            self._checked(list(instance("columns", columns, Set)))
+            columns = {*columns, "case"}
         stored = [n for n in dataset.schema.names if columns is None or n in columns]
         factors = [n for n in self.factors if columns is None or n in columns]
         yield self._with_factors(dataset.schema.empty_table().select(stored), factors)
@@ -247,7 +247,7 @@ class Results:
     def _checked(self, columns: Sequence[str] | None) -> list[str]:
         known = ["case", *self.factors]
         known += [name for name in self.dataset().schema.names if name != "case"]
-        for name in sequence("columns", columns or (), str):
+        for name in () if columns is None else sequence("columns", columns, str):
             if name not in known:
                 raise SettingsError(f'lives have no column "{name}"{nearest(name, known)}')
         return known if columns is None else list(columns)
@@ -280,8 +280,16 @@ class Results:
         return pa.table({**columns, **rest})
 
 
+def _filtered(lives: pa.Table, where: pc.Expression) -> pa.Table:
+    try:
+        return lives.filter(where)
+    except pa.ArrowException as error:
+        why = " ".join(str(error).split())
+        raise SettingsError(f"where = {brief(where)}: {why}") from None
+
+
 def _known(kind: Kind) -> Kind:
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         raise SettingsError(f"kind = {brief(kind)}; allowed are {', '.join(KINDS)}")
     return kind
 
