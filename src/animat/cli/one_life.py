@@ -13,7 +13,7 @@ from typing import NamedTuple
 import pyarrow as pa
 from pydantic import ValidationError
 
-from animat.arguments import callback, file
+from animat.files.arguments import callback, file
 from animat.files.atomic import check_writable, whole
 from animat.files.provenance import provenance
 from animat.files.settings import SettingsError, explain

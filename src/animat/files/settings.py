@@ -16,8 +16,8 @@ from typing import IO, TYPE_CHECKING, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from animat.arguments import DEEPEST, as_python
 from animat.errors import SettingsError
+from animat.files.arguments import DEEPEST, as_python
 from animat.files.validation_errors import mistakes, nearest, written
 
 __all__ = [

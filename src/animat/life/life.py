@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from animat.arguments import MOST_63, MOST_64, callback, instance, whole
+from animat.files.arguments import MOST_63, MOST_64, callback, instance, whole
 from animat.files.tables import to_pandas, write_csv
 from animat.files.validation_errors import brief
 from animat.life.batch import Progress, advance, failure

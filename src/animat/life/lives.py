@@ -17,7 +17,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
-from animat.arguments import MOST_63, callback, instance, sequence, whole
+from animat.files.arguments import MOST_63, callback, instance, sequence, whole
 from animat.files.tables import to_pandas, write_csv
 from animat.life.batch import Batch, Progress
 from animat.life.life import check

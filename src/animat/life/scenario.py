@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from animat.arguments import instance
+from animat.files.arguments import instance
 from animat.files.settings import SettingsError
 from animat.files.validation_errors import plain
 from animat.life.birth import born, clear_biases, draw_weights, place

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
-from animat.arguments import whole
+from animat.files.arguments import whole
 from animat.files.settings import Settings, SettingsError, nearest
 from animat.files.validation_errors import plain
 from animat.mind.affordance import ESTIMATORS, LEARNERS, weight_count

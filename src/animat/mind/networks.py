@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from animat.arguments import instance, real, reals, sequence, whole
+from animat.files.arguments import instance, real, reals, sequence, whole
 from animat.files.settings import SettingsError, nearest
 from animat.files.validation_errors import plain
 from animat.mind.affordance import feed_forward, weight_count

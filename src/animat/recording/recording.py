@@ -18,9 +18,9 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from animat import arguments
-from animat.arguments import callback, whole
+from animat.files import arguments
 from animat.files import atomic as files
+from animat.files.arguments import callback, whole
 from animat.files.checksummed import sealing, unseal
 from animat.files.settings import SettingsError
 from animat.life.life import LONGEST, Life, Moment, Progress, birth, check, live_rows, lived

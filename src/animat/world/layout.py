@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from animat.arguments import instance, real, sequence
+from animat.files.arguments import instance, real, sequence
 from animat.files.settings import Settings, SettingsError, nearest
 from animat.numerics.compiled import kernel
 from animat.world.arena import Arena

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from animat.arguments import MOST_64, instance, real, sequence, whole
+from animat.files.arguments import MOST_64, instance, real, sequence, whole
 from animat.files.settings import nearest
 from animat.files.validation_errors import brief
 from animat.numerics.compiled import compiled, kernel

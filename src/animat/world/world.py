@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from animat import arguments
-from animat.arguments import instance, real, whole
+from animat.files import arguments
+from animat.files.arguments import instance, real, whole
 from animat.files.settings import SettingsError
 from animat.files.validation_errors import brief
 from animat.names import malformed

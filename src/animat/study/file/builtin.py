@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from animat import arguments
+from animat.files import arguments
 from animat.files.atomic import check_writable, write_whole
 from animat.files.settings import SettingsError, nearest
 

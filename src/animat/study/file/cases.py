@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from animat.arguments import instance
+from animat.files.arguments import instance
 from animat.files.settings import SettingsError
 from animat.study.file.axes import axes, combinations, factors, left_out
 from animat.study.file.check import design_mistakes, without

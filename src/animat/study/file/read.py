@@ -8,8 +8,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from animat import arguments
-from animat.arguments import sequence
+from animat.files import arguments
+from animat.files.arguments import sequence
 from animat.files.settings import SettingsError, parse_toml, validated, values_within
 from animat.files.validation_errors import mistakes, written
 from animat.study.file.cases import cases

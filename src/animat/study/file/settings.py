@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
-from animat.arguments import instance
+from animat.files.arguments import instance
 from animat.files.settings import Settings, SettingsError, nearest
 from animat.files.validation_errors import plain
 from animat.life.life import LONGEST

@@ -21,8 +21,8 @@ import pyarrow.dataset as ds
 import pyarrow.parquet as pq
 from pydantic import ValidationError
 
-from animat import arguments
-from animat.arguments import MOST_63, instance, sequence, whole
+from animat.files import arguments
+from animat.files.arguments import MOST_63, instance, sequence, whole
 from animat.files.checksummed_table import Seal, seal_of
 from animat.files.settings import SettingsError, explain, nearest, parse_text, validated
 from animat.files.tables import to_pandas

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from animat.arguments import real, whole
 from animat.errors import Error
+from animat.files.arguments import real, whole
 from animat.mind.mind import Mind
 from animat.robot.khepera import Khepera
 from animat.world.arena import Arena
