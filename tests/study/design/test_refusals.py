@@ -75,7 +75,10 @@ MISTAKES = {
         GRID + '"mind.agent" = { a = {} }',
         'key design.grid."mind.agent": a factor with levels needs a name of your own',
     ),
-    "a column": (GRID + "agent = { a = {} }", "key design.grid.agent: is called like the column agent"),
+    "a column": (
+        GRID + "agent = { a = {} }",
+        "key design.grid.agent: is called like the column agent",
+    ),
     "a name twice": (
         GRID + "mine = { a = {} }\n" + OVER + "mine = { a = {} }",
         "key design.sample.over.mine: another factor has this name",
