@@ -180,7 +180,7 @@ def test_no_figure_needs_pyplot():
         "causes columns learning learning_curve life lifespans marginal margins ratio sobol"
         " specification style survival trend verdicts worlds"
     )
-    code = "; ".join(f"import animat.report.figures.{name}" for name in modules.split())
+    code = "; ".join(f"import animat.figures.{name}" for name in modules.split())
     code += "; import sys; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 

@@ -73,7 +73,7 @@ def test_ring_is_counter_clockwise_from_the_front():
         ({"position_noise": 1.0}, "less than 1"),
         ({"turn_noise": -0.1}, "greater than or equal to 0"),
         ({"motor_noise": "yes"}, "true or false"),
-        ({"infrared": "webots"}, "one of michel1996, linear"),
+        ({"infrared": "webots"}, 'one of "michel1996", "linear"'),
         ({"infra_red": "linear"}, 'did you mean "infrared"'),
         ({"sensors": []}, "at least 8 items"),
         ({"sensors": [{"x": 31.0, "y": 0.0, "direction": 0.0}] * 8}, "outside the collision ring"),

@@ -10,7 +10,7 @@ import math
 import numbers
 import operator
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -128,6 +128,19 @@ def reals(name: str, value: Any, error: type[Error] = SettingsError) -> NDArray[
             if np.isfinite(copy).all():
                 return copy
     raise error(f"{name} {_is(value)}; give an array of finite numbers")
+
+
+def together(error: type[Error], *checks: Callable[[], Any]) -> list[Any]:
+    """Return what checks return. Raises `error` with all that any of them has found."""
+    values, problems = [], []
+    for check in checks:
+        try:
+            values.append(check())
+        except Error as found:
+            problems += found.problems
+    if problems:
+        raise error(*problems)
+    return values
 
 
 def callback(name: str, value: Any, error: type[Error] = SettingsError) -> Any:

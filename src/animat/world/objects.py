@@ -85,7 +85,8 @@ class ObjectType(Settings):
     @field_validator("features", "affords")
     @classmethod
     def _writable_names(cls, given: dict[str, float], info: ValidationInfo) -> dict[str, float]:
-        if problems := name_problems(f"{info.field_name},", given):
+        kind = "feature" if info.field_name == "features" else "affordance"
+        if problems := name_problems(kind, given):
             raise ValueError("\n".join(problems))
         return given
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from animat.files.arguments import MOST_64, instance, real, sequence, whole
-from animat.files.settings import nearest
+from animat.files.arguments import MOST_64, instance, real, sequence, together, whole
+from animat.files.settings import SettingsError, nearest
 from animat.files.validation_errors import brief
 from animat.numerics.compiled import compiled, kernel
 from animat.numerics.elementary import sine_cosine
@@ -45,10 +46,11 @@ def scattered(
     Raises:
         LayoutError: unknown types, impossible counts, seed or gap, or counts that do not fit.
     """
-    seed, gap = _seed_and_gap(seed, gap)
     instance("arena", arena, Arena, LayoutError)
     types = sequence("types", types, ObjectType, LayoutError)
-    counts = _checked_counts(counts, types)
+    counts, seed, gap = together(
+        LayoutError, lambda: _checked_counts(counts, types), *_seed_and_gap(seed, gap)
+    )
     empty = Layout(placements=(), types=types, arena=arena, minimum_gap=gap)
     of_each = {kind: counts[kind.name] for kind in types if counts.get(kind.name)}
     _refuse_too_many(arena, of_each, gap, "objects")
@@ -63,8 +65,9 @@ def with_spares(layout: Layout, per_type: int, seed: int, gap: float) -> Layout:
     Raises:
         LayoutError: an impossible number, seed or gap, or spares that do not fit.
     """
-    seed, gap = _seed_and_gap(seed, gap)
-    per_type = whole("spares", per_type, error=LayoutError)
+    seed, gap, per_type = together(
+        LayoutError, *_seed_and_gap(seed, gap), lambda: whole("spares", per_type)
+    )
     occurring = {site.type for site in layout.placements}
     of_each = {kind: per_type for kind in layout.types if kind.name in occurring}
     _refuse_too_many(layout.arena, of_each, gap, "spare sites")
@@ -81,25 +84,19 @@ def with_spares(layout: Layout, per_type: int, seed: int, gap: float) -> Layout:
 
 def _checked_counts(counts: Any, types: tuple[ObjectType, ...]) -> dict[str, int]:
     names = [kind.name for kind in types]
-    found: list[str] = []
-    checked: dict[str, int] = {}
-    for name, count in instance("counts", counts, Mapping, LayoutError).items():
+
+    def checked(name: Any, count: Any) -> int:
         if name not in names:
-            found.append(f"counts: unknown type {brief(name)}{nearest(str(name), names)}")
-        try:
-            checked[name] = whole(f"counts: {brief(name)}", count, error=LayoutError)
-        except LayoutError as error:
-            found += error.problems
-    if found:
-        raise LayoutError(*found)
-    return checked
+            raise SettingsError(f"counts: unknown type {brief(name)}{nearest(str(name), names)}")
+        return whole(f"counts: {brief(name)}", count)
+
+    given = instance("counts", counts, Mapping)
+    values = together(LayoutError, *(partial(checked, *item) for item in given.items()))
+    return dict(zip(given, values, strict=True))
 
 
-def _seed_and_gap(seed: Any, gap: Any) -> tuple[int, float]:
-    return (
-        whole("seed", seed, 0, MOST_64, LayoutError),
-        real("gap", gap, 0.0, error=LayoutError),
-    )
+def _seed_and_gap(seed: Any, gap: Any) -> tuple[Callable[[], Any], Callable[[], Any]]:
+    return lambda: whole("seed", seed, 0, MOST_64), lambda: real("gap", gap, 0.0)
 
 
 def _refuse_too_many(
