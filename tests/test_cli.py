@@ -503,7 +503,7 @@ def test_a_reader_that_stops_reading_is_no_error_to_talk_of(tmp_path):
     assert run.stdout is not None
     run.stdout.close()
     run.stdout = None
-    _, err = run.communicate(timeout=60)
+    _, err = run.communicate()
     assert run.returncode == 0
     assert err.splitlines()[1:] == []
     assert "Life, steps: 9 of 9" in err
@@ -513,7 +513,7 @@ def test_a_reader_that_stops_reading_is_no_error_to_talk_of(tmp_path):
 def test_a_full_disk_behind_the_output_is_an_error(tmp_path):
     with Path("/dev/full").open("w") as full:
         run = start("life", "--steps", "9", cwd=tmp_path, stdout=full)
-        _, err = run.communicate(timeout=60)
+        _, err = run.communicate()
     assert run.returncode == 1
     assert err.splitlines()[-1] == ("animat: the output cannot be written: No space left on device")
 

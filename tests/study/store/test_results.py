@@ -157,3 +157,11 @@ def test_a_file_that_cannot_be_read_to_its_end_is_told_of(finished, tmp_path):
     for read in (results.lives, results.teachers, results.traces, results.curves):
         with pytest.raises(SettingsError, match=r"-000000\.parquet: (has changed|is torn)"):
             read()
+
+
+def test_the_name_of_a_directory_is_no_column(finished, tmp_path):
+    directory = shutil.copytree(finished, tmp_path / "lifespan=1")
+    results, same = Results(directory), Results(finished)
+    assert results.lives().equals(same.lives())
+    assert results.cases.equals(same.cases)
+    assert results.curves().equals(same.curves())

@@ -23,6 +23,7 @@ from animat.settings import SettingsError, opened
 from animat.study.living.columns import schema
 from animat.study.living.numbering import KINDS, Kind
 from animat.study.living.plan import Plan
+from animat.study.living.seal import read_parquet
 from animat.study.provenance import provenance
 from animat.study.store.differences import differences
 
@@ -103,8 +104,8 @@ def read_cases(directory: Path) -> pa.Table:
     """Return the table of cases. Raises SettingsError where it cannot be read."""
     path = directory / CASES
     try:
-        with opened(path, "table") as file:
-            cases = pq.read_table(file)
+        opened(path, "table").close()
+        cases = read_parquet(path)
         cases.validate(full=True)
     except (OSError, ValueError, pa.ArrowException):
         raise _unreadable(path) from None
@@ -120,8 +121,8 @@ def read_columns(directory: Path, kind: Kind) -> pa.Schema:
     """
     path = directory / kind / COLUMNS
     try:
-        with opened(path, "table") as file:
-            return pq.read_schema(file)
+        opened(path, "table").close()
+        return pq.read_schema(path)
     except (OSError, ValueError, pa.ArrowException):
         if kind == "teachers" and not path.parent.exists():
             return pa.schema([])

@@ -22,7 +22,7 @@ from animat.study.design.study import Study
 from animat.study.living.numbering import Kind, Numbering, Part
 from animat.study.living.parts import identity_of
 from animat.study.living.plan import case_table
-from animat.study.living.seal import LIVED_AGAIN, wrong_with
+from animat.study.living.seal import LIVED_AGAIN, read_parquet, wrong_with
 from animat.study.store.description import CASES, COLUMNS, WRITTEN_ANEW
 
 Stamp = tuple[int, int]
@@ -81,7 +81,7 @@ class Intact:
         row = 0
         names: Any = self._lived
         if part.kind == "teachers":
-            names = pq.read_table(self.directory / part.file, columns=["identity"])["identity"]
+            names = read_parquet(self.directory / part.file, ["identity"])["identity"]
         for place, start, stop in self.numbering[part.kind].pieces(part.number):
             if part.kind == "teachers":
                 yield [names[row].as_py(), start, stop]

@@ -19,12 +19,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.dataset as ds
-import pyarrow.parquet as pq
 
 from animat.settings import SettingsError, nearest, validated
 from animat.study.design.study import Study
 from animat.study.living.numbering import KINDS, Kind, Numbering, Part
-from animat.study.living.seal import Seal, seal_of
+from animat.study.living.seal import Seal, read_parquet, seal_of
 from animat.study.store.description import read_cases, read_columns, read_manifest, read_text
 from animat.study.store.intact import Intact
 from animat.study.store.tally import Tally
@@ -225,7 +224,7 @@ class Results:
         }
         self._intact.check(files)
         with _whole(self.directory):
-            tables = [pq.read_table(file) for file in files]
+            tables = [read_parquet(file) for file in files]
         if not tables:
             return pa.table({})
         return pa.concat_tables(tables, promote_options="default").unify_dictionaries()

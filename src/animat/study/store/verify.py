@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from animat.life.engine import ENGINE
 from animat.progress import Telling
@@ -27,7 +26,7 @@ from animat.study.living.parts import (
     table_of,
 )
 from animat.study.living.plan import Plan, plan_of
-from animat.study.living.seal import content, wrong_with
+from animat.study.living.seal import content, read_parquet, wrong_with
 from animat.study.living.teachers import read_networks
 from animat.study.store.description import (
     CASES,
@@ -166,7 +165,7 @@ def _live_again(directory: Path, plan: Plan, part: Part) -> list[str]:
     needed = classes_needed(plan, part)
     networks = {place: read_networks(directory, plan, place) for place in needed}
     now = table_of(plan, part.kind, live_pieces(plan, part.kind, [piece], networks))
-    then = pq.read_table(path).slice(row, 1)
+    then = read_parquet(path).slice(row, 1)
     differing = [name for name in now.column_names if _differ(now, then, name)]
     if not differing:
         return []
