@@ -187,3 +187,11 @@ def test_whatever_is_wrong_is_refused_in_one_line(shared, method, argument):
         except animat.Error as error:
             refused += all(error.problems)
     assert refused >= 12
+
+
+def test_the_name_of_a_directory_is_no_column(finished, tmp_path):
+    directory = shutil.copytree(finished, tmp_path / "lifespan=1")
+    results, same = Results(directory), Results(finished)
+    assert results.lives().equals(same.lives())
+    assert results.cases.equals(same.cases)
+    assert results.curves().equals(same.curves())

@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as pq
 
-from animat.files.checksummed_table import content, wrong_with
+from animat.files.checksummed_table import content, read_parquet, wrong_with
 from animat.files.settings import SettingsError
 from animat.life.engine import ENGINE
 from animat.progress import Telling
@@ -162,7 +161,7 @@ def _live_again(directory: Path, plan: Plan, part: Part) -> list[str]:
     needed = classes_needed(plan, part)
     networks = {place: read_networks(directory, plan, place) for place in needed}
     now = table_of(plan, part.kind, live_pieces(plan, part.kind, [piece], networks))
-    then = pq.read_table(path).slice(row, 1)
+    then = read_parquet(path).slice(row, 1)
     differing = [name for name in now.column_names if _differ(now, then, name)]
     if not differing:
         return []

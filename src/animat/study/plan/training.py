@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from animat.files.checksummed_table import wrong_with
+from animat.files.checksummed_table import read_parquet, wrong_with
 from animat.files.settings import SettingsError
 from animat.study.plan.plan import Plan, world_of
 from animat.study.plan.shard import part_identity
@@ -25,7 +24,7 @@ def read_networks(directory: Path, plan: Plan, place: int) -> NDArray[np.float64
     wrong = [wrong_with(file, part_identity(plan, part)) for file, part in parts.items()]
     if any(wrong):
         raise SettingsError(*filter(None, wrong))
-    return networks_of(plan, place, pa.concat_tables(pq.read_table(file) for file in parts))
+    return networks_of(plan, place, pa.concat_tables(read_parquet(file) for file in parts))
 
 
 def networks_of(plan: Plan, place: int, table: pa.Table) -> NDArray[np.float64]:

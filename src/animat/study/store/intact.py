@@ -16,7 +16,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from animat.files.checksummed_table import LIVED_AGAIN, wrong_with
+from animat.files.checksummed_table import LIVED_AGAIN, read_parquet, wrong_with
 from animat.files.settings import SettingsError
 from animat.study.file.cases import cases as cases_of
 from animat.study.file.study import Study
@@ -81,7 +81,7 @@ class Intact:
         row = 0
         names: Any = self._lived
         if part.kind == "teachers":
-            names = pq.read_table(self.directory / part.file, columns=["identity"])["identity"]
+            names = read_parquet(self.directory / part.file, ["identity"])["identity"]
         for place, start, stop in self.numbering[part.kind].pieces(part.number):
             if part.kind == "teachers":
                 yield [names[row].as_py(), start, stop]

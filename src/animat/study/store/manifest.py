@@ -19,6 +19,7 @@ import pyarrow.parquet as pq
 from pydantic import BaseModel, Field, PositiveInt
 
 from animat.files.atomic import sync_directory, write_whole
+from animat.files.checksummed_table import read_parquet
 from animat.files.provenance import provenance
 from animat.files.settings import SettingsError, opened
 from animat.life.engine import ENGINE
@@ -104,8 +105,8 @@ def read_cases(directory: Path) -> pa.Table:
     """Return the table of cases. Raises SettingsError where it cannot be read."""
     path = directory / CASES
     try:
-        with opened(path, "table") as file:
-            cases = pq.read_table(file)
+        opened(path, "table").close()
+        cases = read_parquet(path)
         cases.validate(full=True)
     except (OSError, ValueError, pa.ArrowException):
         raise _unreadable(path) from None
@@ -121,8 +122,8 @@ def read_columns(directory: Path, kind: Kind) -> pa.Schema:
     """
     path = directory / kind / COLUMNS
     try:
-        with opened(path, "table") as file:
-            return pq.read_schema(file)
+        opened(path, "table").close()
+        return pq.read_schema(path)
     except (OSError, ValueError, pa.ArrowException):
         if kind == "teachers" and not path.parent.exists():
             return pa.schema([])

@@ -18,12 +18,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.dataset as ds
-import pyarrow.parquet as pq
 from pydantic import ValidationError
 
 from animat.files import arguments
 from animat.files.arguments import MOST_63, instance, sequence, whole
-from animat.files.checksummed_table import Seal, seal_of
+from animat.files.checksummed_table import Seal, read_parquet, seal_of
 from animat.files.settings import SettingsError, explain, nearest, parse_text, validated
 from animat.files.tables import to_pandas
 from animat.files.validation_errors import brief
@@ -239,7 +238,7 @@ class Results:
         }
         self._intact.check(files)
         with _whole(self.directory):
-            tables = [pq.read_table(file) for file in files]
+            tables = [read_parquet(file) for file in files]
         if not tables:
             return pa.table({})
         return pa.concat_tables(tables, promote_options="default").unify_dictionaries()
