@@ -18,11 +18,11 @@ from animat.report.estimates import Estimate
 from animat.report.figures.sobol import ORDERS, sobol_figure
 from animat.report.figures.style import save
 from animat.report.multiverse.sensitivity import sobol_table
+from animat.report.numerals import numeral
 from animat.settings import SettingsError
 from animat.study.design.factors import Range
 from animat.study.design.study import Study
-from animat.study.page.inputs import inputs_sections
-from animat.study.page.words import word
+from animat.study.inputs import inputs_sections
 from animat.study.provenance import provenance
 from animat.study.store.results import Results
 
@@ -183,7 +183,7 @@ def _ranges(study: Study) -> page.TableBlock:
     rows = []
     for key, over in sample.over.items():
         spread = (
-            f"{word(over.low)} to {word(over.high)}"
+            f"{numeral(over.low)} to {numeral(over.high)}"
             f"{', by its logarithm' if over.scale == 'log' else ''}"
             if isinstance(over, Range)
             else ", ".join(map(str, over))

@@ -22,6 +22,7 @@ from animat.report.multiverse.models import Foretold
 from animat.report.multiverse.smallest import NEARLY_ALL, SUPPORT, SURELY
 from animat.report.multiverse.universes import CELLS, CLAIMS
 from animat.report.survival import ALIVE, DeathCount
+from animat.study.inputs import inputs_sections
 from animat.study.multiverse.run import Multiverse
 from animat.study.multiverse.tables import (
     WORDS,
@@ -33,7 +34,6 @@ from animat.study.multiverse.tables import (
     shares_table,
     smallest_table,
 )
-from animat.study.page.inputs import inputs_sections
 from animat.study.provenance import provenance
 
 GAINS = {

@@ -16,10 +16,10 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from animat.report.multiverse.universes import CELLS
+from animat.report.numerals import numeral
 from animat.settings import SettingsError
 from animat.study.design.factors import Range, Scalar
 from animat.study.design.study import Study
-from animat.study.page.words import word
 
 CELL = "cell"
 
@@ -128,7 +128,7 @@ def label(value: Scalar) -> str:
     """Return a value in words: true, 0.2, clamp."""
     if isinstance(value, bool):
         return str(value).lower()
-    return word(value) if isinstance(value, float) else str(value)
+    return numeral(value) if isinstance(value, float) else str(value)
 
 
 def _names(factors: Mapping[str, Any]) -> Iterator[str]:

@@ -17,9 +17,9 @@ from animat.report.page import Section, TableBlock, is_page, write_page
 from animat.report.sections import in_short, result_sections
 from animat.settings import SettingsError, nearest
 from animat.study.design.design import Case, cases
+from animat.study.inputs import inputs_sections
 from animat.study.page.asked import asked_section
 from animat.study.page.how_run import how_run_section, notices
-from animat.study.page.inputs import inputs_sections
 from animat.study.page.methods import model_words, representatives
 from animat.study.reproduction.readings import readings
 from animat.study.store.results import Progress, Results

@@ -25,7 +25,7 @@ from animat.report.figures.survival import survival_figure
 from animat.report.figures.worlds import worlds_figure
 from animat.report.lives import cells
 from animat.report.survival import kaplan_meier
-from animat.study.page.inputs import inputs_sections
+from animat.study.inputs import inputs_sections
 from animat.study.provenance import provenance
 from animat.study.reproduction.readings import CALIBRATED, ERRATA, readings
 from animat.study.reproduction.reproduction import PAPERS_LIVES, Reproduction

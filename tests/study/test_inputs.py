@@ -3,7 +3,7 @@
 import hashlib
 import json
 
-from animat.study.page.inputs import LARGEST, inputs_sections
+from animat.study.inputs import LARGEST, inputs_sections
 
 MANIFEST = {
     "study": "s", "hash": "0", "engine": 1, "steps_to_learn": 0,
