@@ -16,8 +16,8 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from animat.files.settings import SettingsError
+from animat.statistics.numerals import numeral
 from animat.statistics.universes import CELLS
-from animat.statistics.words import word
 from animat.study.file.factors import Range, Scalar
 from animat.study.file.study import Study
 
@@ -130,7 +130,7 @@ def label(value: Scalar) -> str:
     """Return a value in words: true, 0.2, clamp."""
     if isinstance(value, bool):
         return str(value).lower()
-    return word(value) if isinstance(value, float) else str(value)
+    return numeral(value) if isinstance(value, float) else str(value)
 
 
 def _names(factors: Mapping[str, Any]) -> Iterator[str]:

@@ -157,6 +157,8 @@ def _path(part: FigureBase, seen: Columns, world: WorldDrawing) -> None:
     draw_world(ax, world, fills)
     x, y = seen.path.T
     ax.plot(x, y, color=BLACK, lw=0.6, alpha=0.55, rasterized=len(x) > 10_000)
+    ax.plot(x[:1], y[:1], "o", color="white", mec=BLACK, ms=9, ls="", label="start")
+    ax.plot(x[-1:], y[-1:], "D", color=BLACK, mec="white", ms=10, ls="", label="end")
     for reward, symbol, inside, edge, label in (
         (1, "P", "white", BLACK, "success"),
         (-1, "X", BLACK, "white", "failure"),
@@ -164,7 +166,5 @@ def _path(part: FigureBase, seen: Columns, world: WorldDrawing) -> None:
         at = seen.rewards[reward]
         if len(at):
             ax.plot(*at.T, symbol, color=inside, mec=edge, mew=0.6, ms=6, ls="", label=label)
-    ax.plot(x[:1], y[:1], "o", color="white", mec=BLACK, ms=7, ls="", label="start")
-    ax.plot(x[-1:], y[-1:], "D", color=BLACK, mec="white", ms=7, ls="", label="end")
     ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, handletextpad=0.1)
     part.legend(handles=type_handles(fills), loc="outside lower center", ncols=2)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from animat.mind.mind import Mind
 from animat.robot.khepera import Khepera
-from animat.statistics.words import word
+from animat.statistics.numerals import numeral
 
 CALIBRATED = (
     "The number and the places of the objects of Worlds 1 and 2, because Figure 2 is lost. They"
@@ -33,7 +33,7 @@ def readings(mind: Mind, robot: Khepera) -> list[tuple[str, str, str]]:
         f"{name} {variable.law}" for name, variable in mind.resolved_variables().items()
     )
     margins = ", ".join(
-        f"{name} {word(variable.lethal_margin)}"
+        f"{name} {numeral(variable.lethal_margin)}"
         for name, variable in mind.resolved_variables().items()
         if variable.lethal_margin
     )
@@ -43,15 +43,15 @@ def readings(mind: Mind, robot: Khepera) -> list[tuple[str, str, str]]:
         ("How near its bound a variable kills", "lethal_margin", margins or "at the bound itself"),
         ("An act that satisfies past the bound", "overflow", mind.overflow),
         ("A failed act that goes past the bound", "failed_act", mind.failed_act),
-        ("How far a success moves a variable", "success_effect", word(mind.success_effect)),
-        ("How far a failure moves it", "failure_effect", word(mind.failure_effect)),
+        ("How far a success moves a variable", "success_effect", numeral(mind.success_effect)),
+        ("How far a failure moves it", "failure_effect", numeral(mind.failure_effect)),
         ("The error a drive is raised by", "error", mind.error),
         ("When no drive is positive", "gate", mind.gate),
         ("What becomes of an object used", "consumed", "re-placed" if mind.consumed else "stays"),
         (
             "When an object is met",
             "encounter_range",
-            word(mind.encounter_range) + " mm from the rim",
+            numeral(mind.encounter_range) + " mm from the rim",
         ),
         ("How long an interaction lasts", "interaction_steps", f"{mind.interaction_steps} steps"),
         (
@@ -63,15 +63,15 @@ def readings(mind: Mind, robot: Khepera) -> list[tuple[str, str, str]]:
         (
             "Learning rate and cycles",
             "learning",
-            f"{word(learning.rate)}, {learning.cycles} cycles",
+            f"{numeral(learning.rate)}, {learning.cycles} cycles",
         ),
-        ("What counts as a sudden variation", "learning.threshold", word(learning.threshold)),
+        ("What counts as a sudden variation", "learning.threshold", numeral(learning.threshold)),
         (
             "When AF acts",
             "likelihood_threshold",
-            f"likelihood >= {word(mind.likelihood_threshold)}",
+            f"likelihood >= {numeral(mind.likelihood_threshold)}",
         ),
-        ("Noise in the features perceived", "feature_noise", word(mind.feature_noise)),
+        ("Noise in the features perceived", "feature_noise", numeral(mind.feature_noise)),
         ("The search", "wander", f"{mind.wander}, {mind.cruise_speed} motor units ahead"),
         ("The infrared sensors", "robot.infrared", robot.infrared),
     ]

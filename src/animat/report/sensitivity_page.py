@@ -16,7 +16,7 @@ from animat.files.provenance import provenance
 from animat.report import page
 from animat.report.inputs import inputs_sections
 from animat.statistics.estimates import Estimate
-from animat.statistics.words import word
+from animat.statistics.numerals import numeral
 from animat.study.file.factors import Range
 from animat.study.file.study import Study
 
@@ -99,7 +99,7 @@ def _ranges(study: Study) -> page.TableBlock:
     rows = []
     for key, over in sample.over.items():
         spread = (
-            f"{word(over.low)} to {word(over.high)}"
+            f"{numeral(over.low)} to {numeral(over.high)}"
             f"{', by its logarithm' if over.scale == 'log' else ''}"
             if isinstance(over, Range)
             else ", ".join(map(str, over))

@@ -4,6 +4,11 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 
 
+def numeral(value: float) -> str:
+    """A number with all its digits, so that no other looks like it."""
+    return repr(value).removesuffix(".0")
+
+
 def numerals(values: Iterable[float], digits: int = 6) -> dict[float, str]:
     """Each number in words, with at most `digits` digits, or as many as tell it from the others.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from animat.statistics.numerals import numerals
+from animat.statistics.numerals import numeral, numerals
 
 LISTED_AT_MOST = 8
 """More values than this are not listed."""
@@ -16,7 +16,7 @@ def word(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        return repr(value).removesuffix(".0")
+        return numeral(value)
     return f"{value:,}" if isinstance(value, int) else str(value)
 
 
