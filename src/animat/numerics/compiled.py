@@ -31,7 +31,7 @@ from numba.core import config, utils
 from numba.core.caching import FunctionCache
 from numba.core.event import Event, Listener, register
 
-from animat.files.settings import SettingsError
+from animat.errors import SettingsError
 from animat.numerics.identity import STEP_OPTIONS
 from animat.numerics.inlined import inlined
 

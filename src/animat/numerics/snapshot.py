@@ -19,7 +19,7 @@ from numba.core.dispatcher import Dispatcher
 from numba.core.registry import cpu_target
 from numba.np.ufunc.dufunc import DUFunc
 
-from animat.files.settings import SettingsError
+from animat.errors import SettingsError
 from animat.numerics.compiled import compiled
 from animat.numerics.identity import STEP_OPTIONS, Identity, identity
 from animat.numerics.taken import in_library, library_name, python_function, taken
