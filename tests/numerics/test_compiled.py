@@ -137,13 +137,9 @@ class Laboratory:
         self.folder = folder
         self.package = folder / "animat"
         real = Path(animat.__file__).parent
-        shutil.copytree(
-            real / "numerics",
-            self.package / "numerics",
-            ignore=shutil.ignore_patterns("__pycache__"),
-        )
-        for module in ("files/settings.py", "files/validation_errors.py"):
-            shutil.copy(real / module, self.package)
+        unread = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(real / "numerics", self.package / "numerics", ignore=unread)
+        shutil.copy(real / "errors.py", self.package)
         (self.package / "life").mkdir()
         for package in (self.package, self.package / "life"):
             (package / "__init__.py").write_text("")
