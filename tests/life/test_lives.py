@@ -158,8 +158,9 @@ def test_chunks_that_nobody_waits_for_are_not_lived_on(small):
         ({"seed": 2**64}, f"seed = {2**64}; allowed are whole numbers from 0 to 2^64 - 1"),
         ({"steps": 0}, "steps = 0; allowed are whole numbers from 1 to 2^50"),
         ({"steps": 2**50 + 1}, f"steps = {2**50 + 1}; allowed are whole numbers from 1 to 2^50"),
-        ({"lives": 0}, "lives = 0; allowed are whole numbers from 1"),
-        ({"first": -1}, "life = -1; allowed are whole numbers from 0 to 2^64 - 1"),
+        ({"lives": 0}, "lives = 0; allowed are whole numbers from 1 to 1,000,000,000"),
+        ({"first": -1}, "first = -1; allowed are whole numbers from 0 to 2^63 - 1"),
+        ({"first": 2**63 - 1}, "lives = 2; allowed are whole numbers from 1 to 1"),
         ({"networks": []}, "networks is empty; give at least one"),
     ],
 )
@@ -173,7 +174,7 @@ def test_lives_that_cannot_be_lived_are_refused(asked, told, small):
     [
         ({"seed": -1}, "seed = -1"),
         ({"life": -1}, "life = -1"),
-        ({"life": 2**64}, f"life = {2**64}"),
+        ({"life": 2**63}, f"life = {2**63}"),
         ({"steps": -5}, "steps = -5"),
     ],
 )

@@ -28,7 +28,7 @@ from animat.world.world import World
 
 PRODUCT = Path(__file__).parents[2] / "docs" / "examples" / "product.py"
 MADE = {"made": "today"}
-SEED, LIFE = 7, 2**63 + 1
+SEED, LIFE = 7, 2**63 - 1
 STEPS, LATER = 900, 1_500
 
 

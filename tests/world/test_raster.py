@@ -11,10 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import ndimage
 
+from animat.settings import SettingsError
 from animat.world.arena import Arena
 from animat.world.geometry import packed
 from animat.world.raster import BORDER_MM, FIRST_SITE, FREE, MOST_ROOM, TILE, WALL, draw
 from animat.world.shapes import area_and_centroid
+from animat.world.world import World
 
 NONE = np.empty((0, 0))
 
@@ -169,9 +171,8 @@ def test_fields_have_the_types_compiled_code_is_told():
 
 @pytest.mark.parametrize("horizon", [-1.0, math.nan, math.inf])
 def test_impossible_horizons_are_refused(horizon):
-    arena, outlines, _ = random_world(1, 1)
-    with pytest.raises(ValueError, match="horizon"):
-        drawn(arena, outlines, horizon, 2.0)
+    with pytest.raises(SettingsError, match="horizon"):
+        World.abundant().raster(horizon)
 
 
 def test_a_raster_beyond_memory_is_refused():

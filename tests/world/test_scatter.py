@@ -111,7 +111,7 @@ def test_every_impossible_count_is_told():
     assert [line.split(":")[0].split(" =")[0] for line in told] == [
         "counts", "counts", "counts", "counts", "seed", "gap",
     ]  # fmt: skip
-    assert told[0] == 'counts: unknown type "ts"; did you mean "TS"?'
+    assert told[0] == 'counts: unknown type ts; did you mean "TS"?'
     assert refused(dropped, {"TS": 1}, 2**64)[0].startswith("seed")
 
 

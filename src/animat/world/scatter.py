@@ -86,9 +86,10 @@ def _checked_counts(counts: Any, types: tuple[ObjectType, ...]) -> dict[str, int
     names = [kind.name for kind in types]
 
     def checked(name: Any, count: Any) -> int:
+        told = name if isinstance(name, str) else brief(name)
         if name not in names:
-            raise SettingsError(f"counts: unknown type {brief(name)}{nearest(str(name), names)}")
-        return whole(f"counts: {brief(name)}", count)
+            raise SettingsError(f"counts: unknown type {told}{nearest(told, names)}")
+        return whole(f"counts: {told}", count)
 
     given = instance("counts", counts, Mapping)
     values = together(LayoutError, *(partial(checked, *item) for item in given.items()))
