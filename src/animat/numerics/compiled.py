@@ -34,8 +34,6 @@ from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, install_listener
 
-from animat.settings import SettingsError
-
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 PLAIN = (bool, int, float, str, type(None))
@@ -65,6 +63,8 @@ def kernel(function: Function) -> Function:
     try:
         dispatcher: Any = numba.njit(cache=True, **OPTIONS)(function)
     except RuntimeError:  # numba found none of its places writable
+        from animat.settings import SettingsError
+
         raise SettingsError(NO_PLACE) from None
     if dispatcher is not function:
         kept = dispatcher._cache._cache_file

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
@@ -11,7 +12,7 @@ import pytest
 from animat.settings import SettingsError
 from animat.study.living.plan import plan_of
 from animat.study.store import description
-from animat.study.store.description import differences_from, read_manifest
+from animat.study.store.description import changed_inputs, differences_from, read_manifest
 from animat.study.store.results import Results
 from animat.study.store.store import open_store
 from animat.study.store.verify import verify
@@ -83,16 +84,25 @@ def test_a_file_that_has_changed_is_refused_and_its_copy_kept(faults, tmp_path):
     faults.go_on(faults.plan(text), directory)
     own.write_text(WALK.format(number=2))
     (line,) = differences_from(directory, faults.plan(text + "# read again\n"))
-    assert line == f"{own} has changed since; as it was it is in {directory / 'inputs'}"
-    assert verify(Results(directory), telling).problems == [line]
     (copy,) = (directory / "inputs").iterdir()
+    assert line == f"{own} has changed since; as it was it is {copy}"
+    assert verify(Results(directory), telling).problems == [line]
     assert copy.read_text() == WALK.format(number=1)
     own.unlink()
-    gone = f"{own} is not there any more; as it was it is in {directory / 'inputs'}"
+    gone = f"{own} is not there any more; as it was it is {copy}"
     assert differences_from(directory, faults.plan(text)) == [gone]
     assert verify(Results(directory), telling).problems == [gone]
     shutil.copy(copy, own)
     assert differences_from(directory, faults.plan(text)) == []
+
+
+def test_a_file_that_is_gone_is_told_of_with_the_folder_it_was_looked_for_in(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (line,) = changed_inputs(Path("results"), {"inputs": {"mine.py": "0-mine.py"}})
+    assert line == (
+        f"mine.py is not there any more (looked for in {tmp_path});"
+        " as it was it is results/inputs/0-mine.py"
+    )
 
 
 def test_lives_that_became_others_for_reasons_unknown_are_refused(small, copied):
