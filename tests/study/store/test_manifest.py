@@ -13,7 +13,7 @@ from animat.files.settings import SettingsError
 from animat.study.execute.verify import verify
 from animat.study.plan.plan import plan_of
 from animat.study.store import manifest as description
-from animat.study.store.manifest import differences_from, read_manifest
+from animat.study.store.manifest import changed_inputs, differences_from, read_manifest
 from animat.study.store.results import Results
 from animat.study.store.store import open_store
 
@@ -122,6 +122,15 @@ def test_a_study_can_be_run_again_where_the_copies_are(faults, tmp_path, monkeyp
     monkeypatch.chdir(inputs)
     again = text.replace(f"{tmp_path}/b", f"{outside}/b")
     assert faults.plan(again).identities == plan.identities
+
+
+def test_a_file_that_is_gone_is_told_of_with_the_folder_it_was_looked_for_in(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (line,) = changed_inputs(Path("results"), {"inputs": {"mine.py": "0"}})
+    assert line == (
+        f"mine.py is not there any more (looked for in {tmp_path});"
+        " as it was it is in results/inputs"
+    )
 
 
 def test_lives_that_became_others_for_reasons_unknown_are_refused(small, copied):
