@@ -202,7 +202,7 @@ COLUMNS = {
     "object": lambda value: None if value else "TS",
     "event": lambda value: value + " success",
     "reward": lambda value: value - 1,
-    "likelihood_eat": lambda value: value / 2 + 0.1,
+    "likelihood_eat": lambda value: (value or 0.0) / 2 + 0.1,
 }
 
 
