@@ -14,6 +14,8 @@ from animat.study.file.builtin import shipped
 from animat.study.file.read import read_study
 from animat.study.file.study import Study
 
+from ..study.conftest import faults  # noqa: F401
+
 SMALL = (
     "lives=3",
     "steps=600",

@@ -4,6 +4,8 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from ..statistics.tables import likelihoods_table, lives_table, paper_table  # noqa: F401
+
 TYPES = ("TS", "TL", "CS", "CL")
 BEHAVIOURS = ("eat", "shelter", "interact")
 NEEDS = (

@@ -1,3 +1,4 @@
-"""The tables with a known answer that the tests of statistics have, too."""
+"""The fixtures of the tests of reports: tables with a known answer, and a multiverse."""
 
-from ..statistics.tables import *  # noqa: F403
+from ..experiments.conftest import lived, small  # noqa: F401
+from ..statistics.tables import likelihoods_table, lives_table, paper_table  # noqa: F401
