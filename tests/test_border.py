@@ -140,8 +140,18 @@ def test_settings_in_settings_are_refused_where_they_stand(table):
 
 @pytest.fixture(scope="module")
 def calls(tmp_path_factory):
-    """Every public callable that is no group of settings, with arguments that are right."""
+    """Every public callable that is no group of settings, with arguments that are right.
+
+    Some wrong values are names of files; those are written to a folder of their own.
+    """
     folder = tmp_path_factory.mktemp("border")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        yield calls_in(folder)
+
+
+def calls_in(folder: Path) -> dict[Any, dict[str, Any]]:
+    """Return `calls`, whose files are in a folder."""
     world = animat.World.random({"TS": 1}, arena=animat.Arena(width=400.0, height=400.0))
     mind = animat.Mind(agent="LEARNING")
     born = {"mind": mind, "world": world, "steps": 1}
@@ -151,10 +161,14 @@ def calls(tmp_path_factory):
     recording = animat.Recording.load(file)
     networks = life.networks
     study = animat.study.Study(name="small")
+    small = animat.study.Study(name="small", lives=1, steps=1)
+    done = animat.run(small, folder / "done", progress=False)
     features = {"features": {"shape": 0.0, "size": 1.0}}
     return {
         animat.live: born,
+        life.to_csv: {"path": folder / "life.csv"},
         animat.live_many: {**born, "lives": 1, "threads": 1},
+        animat.live_many(**born, lives=1).to_csv: {"path": folder / "lives.csv"},
         animat.record: {**born, "path": folder / "again.parquet"},
         animat.Layout: {"placements": world.layout.placements, "arena": world.arena},
         animat.World: {"layout": world.layout},
@@ -164,12 +178,18 @@ def calls(tmp_path_factory):
         world.save: {"path": folder / "world.toml"},
         world.with_spares: {"n_per_type": 1},
         world.raster: {"horizon": 60.0},
+        mind.functions: {},
         mind.weight_count: {"feature_count": 2},
         networks.likelihoods: features,
+        networks.save: {"path": folder / "networks.toml"},
+        networks.figure: {"objects": {"TS": {"shape": 0.0, "size": 1.0}}},
+        animat.Networks.load: {"path": folder / "none.toml"},
         animat.Recording.load: {"path": file},
         recording.at: {"step": 0},
         recording.verify: {},
         recording.at(0).live: {"steps": 1},
+        animat.run: {"study": small, "out": folder / "done", "threads": 1, "progress": False},
+        done.report: {"out": folder / "report.html"},
         animat.study.read_study: {"path": folder / "none.toml"},
         animat.study.study_file: {"study": "experiment1"},
         animat.study.open: {"directory": folder},
@@ -189,8 +209,9 @@ def test_every_call_refuses_whatever_is_wrong_as_animat_does(calls):
     assert not found, "\n".join(found)
 
 
-MADE_BY_ANIMAT = {animat.Life, animat.Lives, animat.Moment, animat.Recording} | {
-    getattr(animat.study, name) for name in ("Case", "Excluded", "Results")
+MADE_BY_ANIMAT = {
+    *(animat.Life, animat.Lives, animat.Moment, animat.Recording, animat.StudyRun),
+    *(animat.study.Case, animat.study.Excluded, animat.study.Results),
 }
 """What users get and do not make; methods of Results are called in study/store/test_results.py."""
 

@@ -317,7 +317,8 @@ class TestReplay:
             said = animat_says(*command, "a.parquet")
             assert (said.code, said.out) == (2, "")
             assert said.err.startswith('animat: a.parquet: selector = "mine.py:mine": no such')
-        (tmp_path / "mine.py").write_bytes(PRODUCT.read_bytes().replace(b"product", b"mine") + b"#")
+        mine = PRODUCT.read_bytes().replace(b"product", b"mine")
+        (tmp_path / "mine.py").write_bytes(mine.replace(b"here > drives", b"here >= drives"))
         said = animat_says("replay", "--verify", "a.parquet")
         assert said.code == 2
         assert said.err == (
@@ -405,7 +406,7 @@ class TestReproduce:
     def test_quick_is_small_and_may_be_changed(self, animat_says, monkeypatch):
         sizes = []
 
-        def run(settings, *, seed, size, directory, tell, anew):
+        def run(settings, *, size, **_):
             sizes.append(size)
             raise KeyboardInterrupt
 

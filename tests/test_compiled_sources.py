@@ -167,7 +167,7 @@ FUNCTIONS = compiled_functions()
 def test_there_is_something_to_look_at():
     layers = {name.split(".")[1] for name in FUNCTIONS}
     assert layers == set(COMPILING_LAYERS)
-    for name in ("life.step.step", "life.slices.live_slice", "numerics.elementary.exponential"):
+    for name in ("life.step.step", "life.kernels.live_slice", "numerics.elementary.exponential"):
         assert f"animat.{name}" in FUNCTIONS
     assert len(FUNCTIONS) > 80
 

@@ -115,7 +115,10 @@ def test_what_is_said_to_be_written_out_is():
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_every_program_shown_runs_and_says_what_is_shown(here, capsys, page):
-    """The programs of a page share their names, as they would in a notebook."""
+    """The programs of a page share their names, as they would in a notebook.
+
+    One that begins with the name of its file is written there instead, for others to load.
+    """
     names: dict[str, Any] = {"__name__": "shown"}
     shown_here = blocks(page)
     if page == RUNNING:
@@ -125,6 +128,10 @@ def test_every_program_shown_runs_and_says_what_is_shown(here, capsys, page):
             continue
         for large, small in SMALLER.items():
             text = text.replace(large, small)  # noqa: PLW2901
+        if own := re.match(r"# (\S+\.py)\n", text):
+            (here / own[1]).parent.mkdir(exist_ok=True)
+            (here / own[1]).write_text(text)
+            continue
         file = here / f"shown_{number}.py"
         file.write_text(text)
         capsys.readouterr()

@@ -59,6 +59,7 @@ def columns(mind: Mind, world: World) -> tuple[list[str], list[str]]:
 @example(["v"], ["d"], ["eat", "eat_a"], ["a_b", "b"])
 @example(["likelihood_b"], ["d"], ["b"], ["a"])
 @example(["v"], ["v"], ["b"], ["a"])
+@example(["{variable}"], ["{drive}"], ["{behaviour}"], ["{object}"])
 def test_whatever_names_are_accepted_no_column_is_there_twice(variables, drives, behaviours, types):
     refused: list[str] = []
     try:
@@ -69,6 +70,10 @@ def test_whatever_names_are_accepted_no_column_is_there_twice(variables, drives,
     if refused:
         assert all(line and "\n" not in line for line in refused)
         return
+    # What the paper has is there as well.
+    assert {*drives} <= {*mind.drives}
+    assert {*behaviours} <= {*mind.behaviours}
+    drives, behaviours = list(mind.drives), list(mind.behaviours)
     known = len(mind.resolved_variables()) + len(drives) + len(behaviours)
     assert len({*trace, *KEPT, "case", "life"}) == 20 + known + len(KEPT) + 2
     likelihoods = list(spelled([LIKELIHOOD], behaviour=behaviours, object=types))

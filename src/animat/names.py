@@ -70,13 +70,16 @@ def malformed(name: str) -> str | None:
 
 
 def column_like(name: str, *tables: Templates) -> str | None:
-    """Return the column of some tables that a name would give a second time, if there is one."""
+    """Return the column of some tables that a name would give a second time, if there is one.
+
+    Of columns that are called by the names of something, as likelihood_BEHAVIOUR_OBJECT.
+    """
     for template in (each for table in tables for each in table):
         if template in {"{variable}", "{drive}"}:
             continue
         pattern = re.sub(r"\\{(\w+)\\}", r"(.+)", re.escape(template))
         if re.fullmatch(pattern, name):
-            return template
+            return re.sub(r"{(\w+)}", lambda holder: holder[1].upper(), template)
     return None
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,8 @@ import numpy as np
 import pyarrow as pa
 from pydantic import BaseModel
 
+from animat.files import arguments
+from animat.files.arguments import DEEPEST, MOST_THREADS, as_python, number, together, whole
 from animat.files.settings import SettingsError
 from animat.files.validation_errors import plain, written
 from animat.progress import Telling, telling
@@ -70,9 +73,8 @@ class StudyRun:
         """
         from animat.report.study_page import write_report
 
-        path, _ = write_report(
-            self.results, None if out is None else Path(out), None, lambda *_, **__: None
-        )
+        where = None if out is None else arguments.file("out", out)
+        path, _ = write_report(self.results, where, None, lambda *_, **__: None)
         return path
 
 
@@ -96,9 +98,14 @@ def run(
         RunError: the directory is held by another process, or cannot be written any more.
         KeyboardInterrupt: it was interrupted; what is finished is in the directory.
     """
-    _check(out, threads, progress)
+    directory, threads, progress = together(
+        SettingsError,
+        lambda: out if out is None else arguments.path("out", out),
+        lambda: threads if threads is None else whole("threads", threads, 1, MOST_THREADS),
+        lambda: _progress(progress),
+    )
     plan = plan_of(_study(study).to_toml())
-    directory = Path("results") / plan.study.name if out is None else Path(out)
+    directory = directory or Path("results") / plan.study.name
     with _told(progress) as tell, workers_of(threads) as workers:
         if not (directory / MANIFEST).exists():
             check_livable(plan)
@@ -112,18 +119,27 @@ def run(
     return StudyRun(Results(directory), lives.failed)
 
 
-def _check(out: Any, threads: Any, progress: Any) -> None:
-    problems = []
-    if not isinstance(out, str | Path | None):
-        problems.append(f"out is of type {type(out).__name__}; allowed is the path of a directory")
-    if threads is not None and not (isinstance(threads, int | np.integer) and threads >= 1):
-        problems.append(f"threads = {plain(threads)}; allowed are whole numbers from 1")
-    if not (isinstance(progress, bool) or callable(progress)):
-        problems.append(
-            f"progress = {plain(progress)}; allowed are True, False and a function of three"
-        )
-    if problems:
-        raise SettingsError(*problems)
+def _progress(progress: Any) -> Any:
+    """Return what is to be told of progress. Raises SettingsError for what cannot be."""
+    found = number(progress)
+    if isinstance(found, bool):
+        return found
+    if callable(progress) and _takes_three(progress):
+        return progress
+    raise SettingsError(
+        f"progress = {plain(progress)}; allowed are True, False and a function of three"
+    )
+
+
+def _takes_three(function: Any) -> bool:
+    """Tell whether a function can be called as progress is told; a class is none."""
+    try:
+        signature(function).bind("", 0, 0)
+    except TypeError:
+        return False
+    except ValueError:  # some of Python's own do not tell
+        pass
+    return not isinstance(function, type)
 
 
 def _study(study: Any) -> Study:
@@ -148,16 +164,21 @@ def _as_toml(value: Any, key: tuple[str | int, ...], problems: list[str]) -> Any
     Of what has no place in a study file a line is added to `problems`.
     """
     if isinstance(value, BaseModel):
-        return value.model_dump(mode="json", exclude_unset=True)
-    if isinstance(value, Mapping):
-        return {str(k): _as_toml(each, (*key, str(k)), problems) for k, each in value.items()}
-    if isinstance(value, list | tuple):
+        value = value.model_dump(exclude_unset=True)
+    elif isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, Mapping | list | tuple) and len(key) > DEEPEST:
+        problems.append(f"study is nested too deeply: more than {DEEPEST} levels")
+    elif isinstance(value, Mapping):
+        strange = [type(k).__name__ for k in value if not isinstance(k, TOML)]
+        problems += [f"study: key {written(key)}: a key of it is a {name}" for name in strange]
+        keys = [k for k in value if isinstance(k, TOML)]
+        return {str(k): _as_toml(value[k], (*key, str(k)), problems) for k in keys}
+    elif isinstance(value, list | tuple):
         return [_as_toml(each, (*key, n), problems) for n, each in enumerate(value)]
-    if isinstance(value, np.ndarray | np.generic):
-        return _as_toml(value.tolist(), key, problems)
-    if isinstance(value, Path):
+    elif isinstance(value, Path):
         return str(value)
-    if not isinstance(value, TOML):
+    elif not isinstance(value := as_python(value), TOML):
         what = "a function; give it as FILE.py:NAME" if callable(value) else "nothing for a study"
         problems.append(f"study: key {written(key)}: {type(value).__name__} is {what}")
     return value

@@ -9,6 +9,7 @@ import pytest
 import animat
 from animat.cli import one_life
 from animat.cli.one_life import OneLife, live_one, story
+from animat.files.atomic import RunError
 from animat.files.settings import SettingsError
 from animat.life import drawing
 from animat.life import life as life_module
@@ -113,7 +114,7 @@ def test_a_file_that_cannot_be_written_is_refused_before_any_work(tmp_path, monk
     (tmp_path / f"there.{end}").touch()
     (tmp_path / f"directory.{end}").mkdir()
     for path, why in {
-        tmp_path / "a.csv": "give a name that ends in",
+        tmp_path / "a.txt": "give a name that ends in",
         tmp_path / "none": "give a name that ends in",
         tmp_path / f"there.{end}": "is there already; --force replaces it",
         tmp_path / f"directory.{end}": "is a directory",
@@ -148,7 +149,7 @@ def test_a_file_that_comes_to_nothing_leaves_the_old_one(tmp_path, monkeypatch, 
         raise error
 
     monkeypatch.setattr(pq.ParquetWriter, "write_table", fails)
-    expected = SettingsError if isinstance(error, OSError) else error
+    expected = RunError if isinstance(error, OSError) else error
     with pytest.raises(expected):
         live_one(asked(steps=20, trace=path, force=True), silent)
     assert path.read_text() == "old"
@@ -224,7 +225,7 @@ def test_where_a_life_cannot_go_on_is_told(tmp_path):
         ("at", end): f"the life ended at step {end}; go on from before, --at",
         ("at", None): f"the life ended at step {end}",
         ("at", end + 1): f"step {end + 1} is not recorded, only 0 to {end} are",
-        ("at", -1): "step -1 is not recorded",
+        ("at", -1): "step = -1; allowed are whole numbers from 0",
     }.items():
         with pytest.raises(SettingsError, match=why):
             live_one(asked(source=path, **dict([further])), silent)

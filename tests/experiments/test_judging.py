@@ -105,14 +105,20 @@ def test_universes_whose_lives_or_robots_failed_are_left_out(plan, lived, judged
 def fail_one(folder, place):
     """Let the first or the last row (0 or -1) of a folder's tables be of a life that failed."""
     file = sorted(folder.glob("part-*.parquet"))[place]
+    errors: list[str | None] = [None] * pq.read_metadata(file).num_rows
+    errors[place] = "a robot broke"
+    return with_errors(file, errors).to_pylist()[place]
+
+
+def with_errors(file, errors):
+    """Write a part anew, sealed, with these errors, and return the rows it had."""
     rows, seal = pq.read_table(file), seal_of(file)
     assert seal is not None
-    errors = [None] * rows.num_rows
-    errors[place] = "a robot broke"
-    column_place = rows.schema.get_field_index("error")
-    failed = rows.set_column(column_place, "error", pa.array(errors, pa.string()))
-    file.write_bytes(sealed([failed], rows.schema, seal.identity, seal.steps, failed=1))
-    return rows.to_pylist()[place]
+    place = rows.schema.get_field_index("error")
+    failed = rows.set_column(place, "error", pa.array(errors, pa.string()))
+    how_many = sum(error is not None for error in errors)
+    file.write_bytes(sealed([failed], rows.schema, seal.identity, seal.steps, failed=how_many))
+    return rows
 
 
 def test_universes_that_share_their_lives_have_them_each(small, tmp_path):
@@ -156,10 +162,7 @@ def test_where_a_robot_of_every_class_failed_nothing_is_judged(plan, lived, tmp_
     directory = tmp_path / "universes"
     shutil.copytree(lived.directory / "universes", directory)
     for file in (directory / "teachers").glob("part-*.parquet"):
-        rows = pq.read_table(file)
-        place = rows.schema.get_field_index("error")
-        broken = pa.array(["a robot broke"] * rows.num_rows, pa.string())
-        pq.write_table(rows.set_column(place, "error", broken), file)
+        with_errors(file, ["a robot broke"] * pq.read_metadata(file).num_rows)
     none = judge(plan, open_results(directory))
     assert none.table.num_rows == 0
     assert none.missing == len(none.universes.values)

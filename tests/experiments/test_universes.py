@@ -71,6 +71,9 @@ def test_layouts_differ_from_universe_to_universe_and_the_published_ones_do_not(
     assert {choice.layout for choice in fixed} == {"abundant"}
 
 
+SAMPLE_OF_STEPS = {"method": "sobol", "points": 4, "over": {"steps": [9, 10]}}
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -78,7 +81,7 @@ def test_layouts_differ_from_universe_to_universe_and_the_published_ones_do_not(
         ({"teacher": None}, r"needs a \[teacher\]"),
         ({"paired": False}, "paired = true"),
         ({"design": {"sample": None}}, "has no reading"),
-        ({"design": {"sample": {"points": 4, "over": {"steps": [9, 10]}}}}, "steps is no reading"),
+        ({"design": {"sample": SAMPLE_OF_STEPS}}, "steps is no reading"),
     ],
 )
 def test_a_study_that_is_none_is_refused(small, change, message):

@@ -172,11 +172,14 @@ def test_blocks_that_leave_bytes_out_are_refused(place, monkeypatch):
 
 
 def test_what_cannot_be_read_is_told(tmp_path):
+    (tmp_path / "empty.parquet").touch()
     for path, why in {
         tmp_path / "none.parquet": "no such file",
         tmp_path: "is a directory, not a recording",
         tmp_path / "none" / "a.parquet": "no such file",
-        Path("/dev/null"): "is empty",
+        tmp_path / "empty.parquet": "is empty",
+        Path("/dev/null"): "is a special file, not a recording",
+        Path("/dev/zero"): "is a special file, not a recording",
     }.items():
         with pytest.raises(SettingsError, match=why):
             unseal(path)

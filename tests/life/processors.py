@@ -10,6 +10,7 @@ Each is a process of its own with a cache of its own, so that everything is comp
 from __future__ import annotations
 
 import json
+import logging
 import os
 import platform
 import re
@@ -87,6 +88,8 @@ def lived_on(name: str, folder: Path, uncompiled: str = "short") -> dict[str, An
 
 def child(uncompiled: str) -> None:
     """Print what is told of the lives, and the code they were lived by."""
+    # The announcement that kernels are compiled would be the only word on the error output.
+    logging.getLogger("animat").setLevel("ERROR")
     sys.path.insert(0, str(SCRIPT.parent))
     import golden
     from numba import config

@@ -122,18 +122,29 @@ def test_what_is_no_number_is_told_with_its_step(failing, law):
             assert advanced(setting, LIVES[n : n + 1], int(step) + 1)["failure"][0]
 
 
-def test_a_number_that_built_in_functions_carry_to_infinity_is_told_since_its_step():
-    """Coefficients beyond all reason, as a study may try them."""
-    huge = {"a": {"nutrition": 1.6e308, "stamina": 1.6e308, "restlessness": 1.6e308}}
+@pytest.mark.parametrize(
+    ("coefficient", "carried"), [(1.6e308, ["drive_sum"]), (1.632e308, ["drives", "drive_sum"])]
+)
+def test_a_number_that_built_in_functions_carry_to_infinity_is_told_since_its_step(
+    coefficient, carried
+):
+    """Coefficients beyond all reason, as a study may try them.
+
+    With the smaller one the sum of a drive is beyond all numbers before the drive itself is.
+    """
+    huge = {"a": dict.fromkeys(("nutrition", "stamina", "restlessness"), coefficient)}
     mind = Mind(drives={**dict(Mind().drives), "hunger": huge}, death=False)
     setting = bring_together(mind, World.abundant())
     errors = Batch(setting, SEED, STEPS).run(LIVES[:2]).errors
     for n, error in enumerate(errors):
         assert error is not None
         names, _, step = error.rpartition(" not finite since step ")
-        assert names == "drives, drive_sum"
-        assert np.isfinite(advanced(setting, LIVES[n : n + 1], int(step))["drives"]).all()
-        assert not np.isfinite(advanced(setting, LIVES[n : n + 1], int(step) + 1)["drives"]).all()
+        assert names == ", ".join(carried)
+        assert int(step) > 0
+        before, after = (advanced(setting, LIVES[n : n + 1], int(step) + more) for more in (0, 1))
+        for name in ("drives", "drive_sum"):
+            assert np.isfinite(before[name]).all()
+            assert np.isfinite(after[name]).all() == (name not in carried)
         with pytest.raises(FailedLifeError, match=re.escape(error)):
             live(mind, World.abundant(), seed=SEED, life=n, steps=STEPS)
 

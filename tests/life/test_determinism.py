@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from animat.life import batch as life_batch
 from animat.life import lives as life_lives
 from animat.life.batch import advance
 from animat.life.digest import digest
@@ -130,7 +131,7 @@ def test_neither_threads_nor_chunks_matter_to_many_lives_at_once(monkeypatch):
     tables = []
     for threads, chunk, cut in ((1, 32, 10_000), (2, 7, 10_000), (4, 1, 100), (4, 1_000, 999)):
         monkeypatch.setattr(life_lives, "CHUNK", chunk)
-        monkeypatch.setattr(life_lives, "SLICE", cut)
+        monkeypatch.setattr(life_batch, "LOOK_EVERY", cut)
         tables.append(
             live_many(mind, golden.SMALL, lives=70, seed=3, steps=2_000, threads=threads).table
         )
@@ -161,7 +162,7 @@ def test_to_be_recorded_changes_nothing(record, small):
 
 def test_the_largest_indices_are_lives_like_others(small):
     setting = bring_together(Mind(), small)
-    indices = np.array([0, 1, 2**40, 2**64 - 1], np.uint64)
+    indices = np.array([0, 1, 2**40, 2**63 - 1], np.uint64)
     alone = {}
     for index in indices:
         life = live(Mind(), small, seed=1, life=int(index), steps=900)

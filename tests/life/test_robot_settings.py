@@ -38,9 +38,11 @@ def test_khepera_step_mm(length, lived):
 @pytest.mark.parametrize("most", [10, 3])
 def test_khepera_max_motor(most, lived):
     c = lived(robot=Khepera(max_motor=most, **CALM))
-    straight = (c["left"] == 5) & (c["right"] == 5)
+    driven = min(5, most)
+    assert max(np.abs(c["left"]).max(), np.abs(c["right"]).max()) <= most
+    straight = (c["left"] == driven) & (c["right"] == driven)
     way = c.gone()[straight[:-1] & c.free()]
-    assert np.abs(way - 0.5 * min(5, most)).max() < 1e-12
+    assert np.abs(way - 0.5 * driven).max() < 1e-12
 
 
 def test_khepera_motor_noise(lived, usual):

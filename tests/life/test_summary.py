@@ -36,6 +36,7 @@ COLUMNS = {
         for b in ("eat", "shelter", "interact")
         for what in ("acts", "successes")
     },
+    "error": pa.string(),
 }
 
 

@@ -29,7 +29,7 @@ def with_changed(**changes):
 def test_world_features(lived, trained):
     same = with_changed(features={"shape": 0.0, "size": 0.0})
     c = lived(world=world_of(same), agent="AF", networks=trained, steps=6_000)
-    said = {c["likelihood_eat"].max(), c["likelihood_eat"][-1]} - {0.0}
+    said = set(c["likelihood_eat"][~np.isnan(c["likelihood_eat"])])
     wanted = trained.likelihoods({"shape": 0.0, "size": 0.0})["eat"]
     assert list(said) == pytest.approx([wanted])
     met = set(c["object"]) - {None}

@@ -1,5 +1,6 @@
 import functools
 import inspect
+from pathlib import Path
 
 import numba
 import numpy as np
@@ -158,7 +159,7 @@ def test_what_is_no_python_function_is_refused(thing):
     ("content", "address", "told"),
     [
         (None, "{path}:law", 'law = "{path}:law": no such built-in and no such file;'),
-        (None, "gone.py", 'law = "gone.py": no such built-in and no such file;'),
+        (None, "gone.py", 'law = "gone.py": no such built-in and no such file in {here};'),
         ("law = 1", "{path}:law", '{path} has no function "law"; wanted'),
         ("other = len", "{path}:law", '{path} has no function "law"; wanted'),
         ("def law(:", "{path}:law", "{path} does not run: SyntaxError: "),
@@ -175,7 +176,7 @@ def test_a_file_that_will_not_do_says_why(tmp_path, content, address, told):
         resolve("law", address.format(path=path))
     message = str(error.value)
     assert message.startswith("law")
-    assert told.format(path=path) in message
+    assert told.format(path=path, here=Path.cwd()) in message
     assert "\n" not in message
     if "does not run" not in message:
         assert LAW in message

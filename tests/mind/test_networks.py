@@ -7,6 +7,7 @@ from animat.files.settings import SettingsError
 from animat.mind.affordance import feed_forward, weight_count
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
+from animat.names import malformed
 
 EAT_AND_REST = ("eat", "rest")
 
@@ -81,8 +82,9 @@ def test_weights_that_are_no_numbers_are_refused(weight):
 
 doubles = st.floats(allow_nan=False, allow_infinity=False)
 names = st.lists(
-    st.text(st.characters(codec="utf-8"), min_size=1, max_size=6), min_size=1, max_size=3,
-    unique=True,
+    st.text(st.characters(codec="utf-8"), max_size=6).filter(lambda name: malformed(name) is None)
+    | st.sampled_from(['"', "a\\", "a.b", "[a]", "{a}", "a = 1", "#", "é"]),
+    min_size=1, max_size=3, unique=True,
 )  # fmt: skip
 
 

@@ -195,6 +195,8 @@ def law_within(x):
     return inner(x)
 
 
+# Numba calls a tuple of functions experimental, and says so of the user's function.
+@pytest.mark.filterwarnings("ignore:First-class function type feature is experimental")
 @pytest.mark.parametrize(
     "law",
     [law_each, law_declared, law_recursive, law_replaced, law_of_a_tuple, law_of_a_record,

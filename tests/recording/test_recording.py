@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from animat.files.atomic import RunError
 from animat.files.checksummed import TEXT, sealing
 from animat.files.settings import SettingsError
 from animat.life.engine import ENGINE
@@ -290,7 +291,7 @@ def test_another_life_parts_where_the_lives_part(known, small, change):
 
 
 def test_a_life_that_ends_elsewhere_is_another(small, tmp_path):
-    mortal = born(Mind(variables={"stamina": {"start": 0.97}}), small)
+    mortal = born(Mind(variables={"stamina": {"start": 0.9995}}), small)
     recording = record(tmp_path / "a.parquet", mortal)
     assert recording.head.death is not None
     end = recording.head.last
@@ -298,7 +299,7 @@ def test_a_life_that_ends_elsewhere_is_another(small, tmp_path):
     assert recording.verify() is None
     assert recording.at(end).state.dead
     immortal = json.loads(
-        Mind(variables={"stamina": {"start": 0.97}}, death=False).model_dump_json()
+        Mind(variables={"stamina": {"start": 0.9995}}, death=False).model_dump_json()
     )
     other = forged(recording, mind=immortal)
     found = other.verify()
@@ -412,7 +413,7 @@ def test_what_cannot_be_recorded_is_refused_and_leaves_nothing(small, tmp_path):
     assert "every = 0; allowed" in why(moment, every=0)
     assert "steps = 0; allowed" in why(moment, steps=0)
     assert "nothing left to live up to 50" in why(after(moment, 50), steps=50)
-    dead = after(born(Mind(variables={"stamina": {"start": 0.97}}), small), STEPS)
+    dead = after(born(Mind(variables={"stamina": {"start": 0.9995}}), small), STEPS)
     assert "nothing left to live up to 900" in why(dead)
     assert "selector: a recorded life must find" in why(born(Mind(selector=first), small))
 
@@ -432,7 +433,7 @@ def test_a_recording_that_comes_to_nothing_leaves_the_old_file(small, tmp_path, 
         if len(blocks) == 2:
             raise error
 
-    expected = SettingsError if isinstance(error, OSError) else error
+    expected = RunError if isinstance(error, OSError) else error
     with pytest.raises(expected):
         write_recording(path, born(Mind(), small), steps=STEPS, every=9, made=MADE, progress=fails)
     assert path.read_text() == "old"

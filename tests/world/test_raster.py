@@ -7,11 +7,11 @@ import sys
 import numpy as np
 import pytest
 import shapely
-from animat.settings import SettingsError
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import ndimage
 
+from animat.files.settings import SettingsError
 from animat.world.arena import Arena
 from animat.world.geometry import packed
 from animat.world.raster import BORDER_MM, FIRST_SITE, FREE, MOST_ROOM, TILE, WALL, draw

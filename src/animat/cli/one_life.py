@@ -11,14 +11,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pyarrow as pa
-from pydantic import ValidationError
 
 from animat.files.arguments import callback, file
 from animat.files.atomic import check_writable, whole
 from animat.files.provenance import provenance
-from animat.files.settings import SettingsError, explain
+from animat.files.settings import SettingsError
 from animat.files.tables import write_tables
-from animat.life.life import Life, Moment, Progress, TraceChoice, birth, check, live, lived
+from animat.life.life import Life, Moment, Progress, TraceChoice, birth, check, drawn, live, lived
 from animat.life.scenario import LifeError, bring_together, checked_parameters
 from animat.life.trace import table
 from animat.mind.mind import Mind
@@ -99,9 +98,9 @@ def live_one(asked: OneLife, tell: Telling) -> Life:
         mind, world = moment.setting.mind, moment.setting.world
         rows = lived(moment.copy(), life.lifespan, TraceChoice())
         parts = (table(part, mind, world) for part in rows)
-        drawn = life.drawn(parts, (moment.step, life.lifespan))
+        picture = drawn(life, parts, (moment.step, life.lifespan))
         with whole(asked.figure) as partial:
-            drawn.savefig(partial, format=asked.figure.suffix[1:].lower())
+            picture.savefig(partial, format=asked.figure.suffix[1:].lower())
     if asked.save_networks:
         life.networks.save(asked.save_networks)
     return life
@@ -200,10 +199,8 @@ def _knowing(mind: Mind, world: World, path: Path) -> Mind:
     try:
         knowing = Mind(**{**dict(mind), "networks": networks})
         record = checked_parameters(knowing, world)
-    except ValidationError as error:
-        raise explain(error, Mind, str(path)) from None
-    except LifeError as error:
-        raise LifeError(*(f"{path}: {line}" for line in error.problems)) from None
+    except SettingsError as error:
+        raise type(error)(*(f"{path}: {line}" for line in error.problems)) from None
     if not networks_matter(record):
         raise LifeError(f"{path}: the agent {mind.agent} asks no networks; take AF or LEARNING")
     return knowing

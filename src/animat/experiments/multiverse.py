@@ -56,11 +56,12 @@ class InterruptedStudyError(Error):
 
 
 class Multiverse(NamedTuple):
-    """What was found in the universes of a study. Tables are those of `animat.report.multiverse`.
+    """What was found in the universes of a study.
 
-    `left_out` is how many cases each rule leaves out. `found` has a set for each claim, or None;
-    `confirmed` what fresh universes say of those found, where not all of them failed. `cap` is None
-    where nothing was lived to a late cap, `foretold` where scikit-learn is not installed.
+    Tables are those of `animat.report.multiverse_tables`. `left_out` is how many cases each rule
+    leaves out. `found` has a set for each claim, or None; `confirmed` what fresh universes say of
+    those found, where not all of them failed. `cap` is None where nothing was lived to a late cap,
+    `foretold` where scikit-learn is not installed.
     """
 
     study: Study

@@ -30,6 +30,8 @@ MOST_64 = (1 << 64) - 1
 MOST_63 = (1 << 63) - 1
 """The largest index of a life: tables hold it in 64 bits, one of them for the sign."""
 
+MOST_THREADS = 4_096
+
 LONGEST_NAME = 255
 """Bytes of the name of a file."""
 
@@ -141,6 +143,14 @@ def together(error: type[Error], *checks: Callable[[], Any]) -> list[Any]:
     if problems:
         raise error(*problems)
     return values
+
+
+def boolean(name: str, value: Any, error: type[Error] = SettingsError) -> bool:
+    """Return an argument as a bool. Raises `error`."""
+    found = number(value)
+    if isinstance(found, bool):
+        return found
+    raise error(f"{name} = {brief(value)}; allowed are True and False")
 
 
 def callback(name: str, value: Any, error: type[Error] = SettingsError) -> Any:

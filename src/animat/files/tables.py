@@ -11,6 +11,7 @@ import pyarrow.compute as pc
 import pyarrow.csv as pc_csv
 import pyarrow.parquet as pq
 
+from animat.files.arguments import file
 from animat.files.atomic import whole
 from animat.files.settings import SettingsError
 
@@ -42,7 +43,7 @@ def write_tables(tables: Iterable[pa.Table], path: Path, *, csv: bool) -> int:
 
 def write_csv(table: pa.Table, path: str | Path) -> None:
     """Write a table as CSV, whole or not at all. Raises SettingsError where it cannot."""
-    with whole(Path(path)) as partial:
+    with whole(file("path", path)) as partial:
         write_tables([table], partial, csv=True)
 
 

@@ -12,6 +12,7 @@ import pyarrow as pa
 from animat.figures.life import life_figure
 from animat.figures.worlds import RobotDrawing, WorldDrawing
 from animat.mind.mind import Drive, Mind
+from animat.numerics.elementary import sine_cosine
 from animat.robot.khepera import REACH, Khepera
 from animat.world.files import WorldFile
 from animat.world.world import World
@@ -43,7 +44,7 @@ def file_drawing(file: WorldFile) -> WorldDrawing:
     kinds = {kind.name: kind.polygon() for kind in file.types}
     polygons = []
     for one in file.objects:
-        sine, cosine = math.sin(one.angle), math.cos(one.angle)
+        sine, cosine = sine_cosine(one.angle)
         turned = kinds[one.type] @ np.array([[cosine, sine], [-sine, cosine]])
         polygons.append(turned + np.array([one.x, one.y]))
     return WorldDrawing(

@@ -121,21 +121,22 @@ class Life:
         """
         if self.trace is None or not self.trace.num_rows:
             raise LifeError('no step of this life was recorded: live it with record="all"')
-        return self.drawn(self.trace)
+        return drawn(self, self.trace)
 
-    def drawn(
-        self, trace: pa.Table | Iterable[pa.Table], span: tuple[int, int] | None = None
-    ) -> Figure:
-        """Draw a trace of this life that it does not hold itself.
 
-        Of a trace in parts, `span` is its first step and the one after its last.
-        """
-        from animat.life.drawing import draw_life
+def drawn(
+    life: Life, trace: pa.Table | Iterable[pa.Table], span: tuple[int, int] | None = None
+) -> Figure:
+    """Draw a trace of a life that it need not hold itself.
 
-        title = f"{self.mind.agent}, {self.world.name}, seed {self.seed}: {self.lifespan:,} steps"
-        if self.death is not None:
-            title += f", died of {self.death}"
-        return draw_life(trace, self.mind, self.world, title, span)
+    Of a trace in parts, `span` is its first step and the one after its last.
+    """
+    from animat.life.drawing import draw_life
+
+    title = f"{life.mind.agent}, {life.world.name}, seed {life.seed}: {life.lifespan:,} steps"
+    if life.death is not None:
+        title += f", died of {life.death}"
+    return draw_life(trace, life.mind, life.world, title, span)
 
 
 class Moment(NamedTuple):

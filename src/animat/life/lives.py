@@ -17,7 +17,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
-from animat.files.arguments import MOST_63, callback, instance, sequence, whole
+from animat.files.arguments import MOST_63, MOST_THREADS, callback, instance, sequence, whole
 from animat.files.tables import to_pandas, write_csv
 from animat.life.batch import Batch, Progress
 from animat.life.life import check
@@ -43,8 +43,6 @@ STEPS_OF_A_CHUNK = 2_000_000
 
 MOST_LIVES = 10**9
 """Lives that may be asked for at once; in a study, by each case."""
-
-MOST_THREADS = 4_096
 
 TURNS = 8
 """How many times a thread takes a chunk at least, of lives enough."""
@@ -100,19 +98,20 @@ class Lives:
             return self.table
         if self.failed == self.table.num_rows:
             raise LifeError(f"all {self.failed} lives failed; the column error says why")
-        self.warn("they are left out of account")
+        _warn(self, "they are left out of account")
         return self.table.filter(pc.field("error").is_null())
 
-    def warn(self, what: str) -> None:
-        """Warn of lives that failed, with the first of them, if any did."""
-        if self.failed:
-            first = self.table.filter(pc.field("error").is_valid()).slice(0, 1).to_pylist()[0]
-            warnings.warn(
-                f"{self.failed} of {self.table.num_rows} lives failed; {what}; such as life"
-                f" {first['life']}: {first['error']}",
-                RuntimeWarning,
-                stacklevel=3,
-            )
+
+def _warn(lives: Lives, what: str) -> None:
+    """Warn of lives that failed, with the first of them, if any did."""
+    if lives.failed:
+        first = lives.table.filter(pc.field("error").is_valid()).slice(0, 1).to_pylist()[0]
+        warnings.warn(
+            f"{lives.failed} of {lives.table.num_rows} lives failed; {what}; such as life"
+            f" {first['life']}: {first['error']}",
+            RuntimeWarning,
+            stacklevel=3,
+        )
 
 
 def live_many(
@@ -149,7 +148,7 @@ def live_many(
     weights = None if networks is None else np.array([one.weights for one in networks])
     chunks = live_chunks(setting, seed, first, lives, steps, weights, threads, progress)
     lived = Lives(pa.concat_tables(chunks).unify_dictionaries())
-    lived.warn("the others are kept")
+    _warn(lived, "the others are kept")
     return lived
 
 

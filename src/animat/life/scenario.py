@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from animat.files.arguments import instance
+from animat.files.arguments import boolean, instance
 from animat.files.settings import SettingsError
 from animat.files.validation_errors import plain
 from animat.life.birth import born, clear_biases, draw_weights, place
@@ -90,6 +90,7 @@ def bring_together(
     mind_parameters = checked_parameters(mind, world)
     horizon = robot.radius + mind.encounter_range + world.resolution
     body, raster = robot.parameters(), world.raster(horizon)
+    check_functions = boolean("check_functions", check_functions, LifeError)
     functions = functions or mind.functions(check=check_functions)
     if functions != BUILT_IN:
         hidden = mind.learning.hidden_units

@@ -140,8 +140,9 @@ def _load(role: str, address: str) -> Callable[..., Any]:
     file, _, name = address.rpartition(":")
     path = Path(file)
     if not file or not path.is_file():
+        where = "" if path.is_absolute() else f" in {Path.cwd()}"
         raise FunctionError(
-            f'{role} = "{address}": no such built-in and no such file in {Path.cwd()};'
+            f'{role} = "{address}": no such built-in and no such file{where};'
             f" give FILE.py:NAME of a function {SIGNATURES[role]}"
         )
     if path.suffix != ".py":

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
-from animat.files.arguments import whole
+from animat.files.arguments import boolean, whole
 from animat.files.settings import Settings, SettingsError, nearest
 from animat.files.validation_errors import plain
 from animat.mind.affordance import ESTIMATORS, LEARNERS, weight_count
@@ -254,8 +254,9 @@ class Mind(Settings):
     def functions(self, *, check: bool = False) -> Functions:
         """Return the custom functions, compiled. With `check`, they check every index they use.
 
-        Raises FunctionError.
+        Raises FunctionError, and SettingsError for a `check` that is no bool.
         """
+        check = boolean("check", check)
         own = self.own_functions()
         return BUILT_IN._replace(**{role: resolve(role, own[role], check=check) for role in own})
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.files import arguments
 from animat.files.arguments import instance, real, reals, sequence, whole
 from animat.files.settings import SettingsError, nearest
 from animat.files.validation_errors import plain
@@ -98,13 +99,17 @@ class Networks:
 
         Raises SettingsError, with a line for everything that is wrong with the file.
         """
-        file = read_networks_file(Path(path))
+        file = read_networks_file(arguments.path("path", path))
         return cls(tuple(file.weights), file.features, file.hidden, file.matrix())
 
     def save(self, path: str | Path) -> None:
         """Write the networks as a TOML file, replacing what was there. Raises SettingsError."""
         write_networks_file(
-            Path(path), self.behaviours, self.features, self.hidden, np.asarray(self.weights)
+            arguments.file("path", path),
+            self.behaviours,
+            self.features,
+            self.hidden,
+            np.asarray(self.weights),
         )
 
     def figure(self, objects: Mapping[str, Mapping[str, float]] | None = None) -> Figure:
@@ -112,12 +117,13 @@ class Networks:
 
         Networks of two features are drawn as a surface over both, others as a bar for each object.
         `objects` are the features of object types by their names, such as
-        `{kind.name: kind.features for kind in world.types}`. Raises ValueError where these are not
-        the features the networks know.
+        `{kind.name: kind.features for kind in world.types}`. Raises SettingsError where these are
+        not the features the networks know.
         """
         from animat.figures.networks import SURFACE, networks_figure
 
-        named = {name: dict(features) for name, features in (objects or {}).items()}
+        named = instance("objects", {} if objects is None else objects, Mapping)
+        _names("objects", [*named])
         said = [list(self.likelihoods(features).values()) for features in named.values()]
         places = np.array([[each[f] for f in self.features] for each in named.values()])
         return networks_figure(

@@ -227,6 +227,14 @@ def test_a_mistake_of_a_design_is_told_for_what_it_excludes_too():
         excluded(study)
 
 
+BY_NAME = {
+    "acts_": "acts_BEHAVIOUR",
+    "successes_": "successes_BEHAVIOUR",
+    "likelihood_": "likelihood_BEHAVIOUR_OBJECT",
+}
+"""How the columns of behaviours and object types begin, and how they are told."""
+
+
 def test_no_factor_can_be_taken_for_a_column():
     text = 'measures = ["likelihoods"]\n[teacher]\n[mind]\nagent = "AF"'
     plan = Plan(study_of(text))
@@ -234,7 +242,10 @@ def test_no_factor_can_be_taken_for_a_column():
     assert names >= {"lifespan", "weights", "acts_eat", "likelihood_eat_TS"}
     for name in names | {"case", "identity", "same_as"}:
         (line,) = refused(f"[design.grid]\n{name} = {{ a = {{}} }}")
-        assert "give the factor another name" in line or f"design.grid.{name}: is a section" in line
+        assert line.startswith(f"key design.grid.{name}: is ")
+        if "is a section" not in line:
+            column = next((each for start, each in BY_NAME.items() if name.startswith(start)), name)
+            assert f"called like the column {column} of a table; give it another name" in line
 
 
 @pytest.mark.parametrize("case", MISTAKES)

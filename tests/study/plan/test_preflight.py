@@ -57,8 +57,15 @@ MISTAKES = {
         '[mind]\nselector = "none.py:choose"',
         'selector = "none.py:choose": no such built-in and no such file',
     ),
-    "a resolution": ("[world]\nresolution = 0.01", "resolution = 0.01: allowed is a length from"),
-    "too many cells": ("[world]\nresolution = 0.1", "at most 100000000 cells are allowed"),
+    "a resolution": (
+        "[world]\nresolution = 0.01",
+        "resolution = 0.01; allowed are finite numbers from 0.1 to 50",
+    ),
+    "too many cells": (
+        "[world]\nresolution = 0.1",
+        "resolution = 0.1 mm makes 12,000 x 12,000 cells of an arena of 1000 x 1000 mm;"
+        " allowed are 100,000,000",
+    ),
 }
 
 

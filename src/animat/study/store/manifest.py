@@ -194,8 +194,9 @@ def changed_inputs(directory: Path, manifest: dict[str, Any]) -> list[str]:
         there = Path(path).is_file()
         if not there or file_hash(Path(path)) != content:
             what = "has changed since" if there else "is not there any more"
-            where = "" if Path(path).is_absolute() else f" (looked for in {Path.cwd()})"
-            lines.append(f"{path} {what}{where}; as it was it is in {directory / INPUTS}")
+            if not there and not Path(path).is_absolute():
+                what += f" (looked for in {Path.cwd()})"
+            lines.append(f"{path} {what}; as it was it is in {directory / INPUTS}")
     return lines
 
 
