@@ -131,13 +131,28 @@ class Remote(Executor):
                 self._see_scheduler()
                 with suppress(OSError):
                     await self._roster.look()
-                for there, allowed in list(self._placed.values()):
-                    if not allowed & self._roster.accepted.keys():
-                        there.release()
+                    await self._release_stranded()
                 if self._jobs and self._running:
                     await self._jobs.keep()
         except Exception as error:
             self._fail(error)
+
+    async def _release_stranded(self) -> None:
+        """Let those parts be given to others for which only workers that have gone may be used.
+
+        Only the scheduler knows which these are: of a part that has killed its workers the news may
+        still be on its way, and it must not be begun again.
+        """
+
+        # Pickled by value, since the scheduler may have an animat without it.
+        def waiting(dask_scheduler: Any) -> list[str]:
+            return [str(task.key) for task in dask_scheduler.unrunnable]
+
+        if any(not may & self._roster.accepted.keys() for _, may in self._placed.values()):
+            client: Any = self._client
+            for key in await client.run_on_scheduler(waiting):
+                if key in self._placed:
+                    self._placed[key][0].release()
 
     def _see_scheduler(self) -> None:
         if self._client.status != "running":
