@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import argparse
 import ctypes
+import inspect
 import json
 import os
 import re
@@ -97,51 +98,40 @@ def _arguments(line: str) -> int:
     return call[1].count(",") + 1 if call and call[1] else 0
 
 
-def counted(kernel: Any) -> Counted:
-    """Return a counting copy of a kernel that was compiled for one signature in this process."""
+def counted(code: str, symbols: Any, environment: object, function: Callable[..., Any]) -> Counted:
+    """Return a counting copy of a kernel, of which this is LLVM's code.
+
+    `symbols` are those of Python's wrapper and of the environment; `function` was compiled to it.
+    """
     from llvmlite import binding
     from numba import _dynfunc  # pyright: ignore[reportAttributeAccessIssue]
 
-    (overload,) = kernel.overloads.values()
-    described = overload.fndesc
-    module = binding.parse_assembly(counting(str(overload.library._get_module_for_linking())))
+    module = binding.parse_assembly(counting(code))
     module.verify()
     machine = binding.Target.from_default_triple().create_target_machine(opt=1, jit=True)
     engine = binding.create_mcjit_compiler(module, machine)
     engine.finalize_object()
     counter = ctypes.c_int64.from_address(engine.get_global_value_address(COUNTER))
-    environment = ctypes.c_void_p.from_address(engine.get_global_value_address(described.env_name))
-    environment.value = id(overload.environment)
+    place = ctypes.c_void_p.from_address(engine.get_global_value_address(symbols.environment))
+    place.value = id(environment)
+    address = engine.get_function_address(symbols.wrapper)
+    alive = (engine, environment)
     call = _dynfunc.make_function(
-        described.lookup_module(),
-        described.qualname,
-        "",
-        engine.get_function_address(described.llvm_cpython_wrapper_name),
-        overload.environment,
-        (engine, overload),
+        inspect.getmodule(function), function.__name__, "", address, environment, alive
     )
     return Counted(call, lambda: counter.value)
 
 
-def lived(kernel: Callable[..., Any], setting: Any) -> str:
+def lived(call: Callable[..., Any], setting: Any) -> str:
     """Live a life of STEPS steps by a kernel, and return its digest."""
     import numpy as np
 
     from animat.life.digest import digest
+    from animat.numerics.layout import raw
 
     lives = np.zeros(1, np.uint64)
     states, present = setting.begin(1, lives)
-    kernel(
-        states,
-        present,
-        lives,
-        setting.mind_parameters,
-        setting.robot_parameters,
-        setting.raster,
-        setting.functions,
-        np.uint64(1),
-        STEPS,
-    )
+    call(raw(states), present, lives, *setting.constants, 1, STEPS)
     return digest(states[0], present[0])
 
 
@@ -150,6 +140,8 @@ def counts() -> dict[str, int]:
 
     Each is lived by the kernel itself too, and has to come to the same end.
     """
+    from numba.core.environment import Environment
+
     import animat
     from animat.life.kernels import live_slice
     from animat.life.scenario import bring_together
@@ -162,8 +154,11 @@ def counts() -> dict[str, int]:
     ):
         mind = animat.Mind(agent=agent, death=False)
         setting = bring_together(mind, world, animat.Khepera(infrared=infrared))
-        end = lived(live_slice, setting)
-        call, count = counted(live_slice)
+        end = lived(live_slice.of(setting.counts, setting.functions), setting)
+        ((library, symbols),) = live_slice.libraries
+        code = str(library._get_module_for_linking())
+        environment = Environment(live_slice.function.__globals__)
+        call, count = counted(code, symbols, environment, live_slice.function)
         assert lived(call, setting) == end
         found[f"{world.name}, {agent}, {infrared}"] = count()
     return found

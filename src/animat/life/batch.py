@@ -22,6 +22,7 @@ from animat.life.failure import carried_not_finite, failure_of, not_finite, rais
 from animat.life.kernels import live_slice
 from animat.life.likelihoods import likelihoods
 from animat.life.scenario import LifeError, Setting
+from animat.numerics.layout import raw
 from animat.numerics.threads import attempt
 
 LOOK_EVERY = 10_000
@@ -187,17 +188,8 @@ def advance(
     until: int,
 ) -> None:
     """Advance L lives, in place, until each has `until` steps or is dead."""
-    live_slice(
-        states,
-        present,
-        lives,
-        setting.mind_parameters,
-        setting.robot_parameters,
-        setting.raster,
-        setting.functions,
-        np.uint64(seed),
-        until,
-    )
+    call = live_slice.of(setting.counts, setting.functions)
+    call(raw(states), present, lives, *setting.constants, seed, until)
 
 
 def failure(

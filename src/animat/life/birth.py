@@ -10,14 +10,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numba import types
 from numpy.typing import NDArray
 
 from animat.life.sight import row_and_column
-from animat.life.state import NO_SITE, state_dtype
-from animat.mind.mind import Mind
-from animat.numerics.compiled import compiled, kernel
+from animat.life.state import INDICES, NO_SITE, PRESENT, STATE, Counts, state_at
+from animat.numerics.compiled import compiled
+from animat.numerics.layout import BYTES
+from animat.numerics.linked import linked
 from animat.numerics.streams import START, WEIGHTS, uniforms
 from animat.robot.collision import CLEAR, touched
+from animat.robot.parameters import ROBOT, robot_at
+from animat.world.raster import RASTER
 
 START_MARGIN = 50.0
 """How far from the edge of the playground a life starts at least, in mm."""
@@ -26,12 +30,16 @@ ATTEMPTS = 100_000
 """How many poses are tried before a world counts as having no room to start."""
 
 
-@kernel
-def place(states, present, lives, robot, raster, seed, width, height):
+@linked(
+    (BYTES, PRESENT, INDICES, BYTES, RASTER, types.uint64, types.float64, types.float64),
+    (STATE, ROBOT),
+)
+def place(states, present, lives, robots, raster, seed, width, height, functions):
     """Set the start poses of L states; return how many found no clear pose."""
     homeless = 0
-    for n in range(len(states)):
-        if not find_pose(states[n], present[n], robot, raster, seed, lives[n], width, height):
+    for n in range(len(lives)):
+        state, body = state_at(states, n), robot_at(robots, 0)
+        if not find_pose(state, present[n], body, raster, seed, lives[n], width, height):
             homeless += 1
     return homeless
 
@@ -57,11 +65,11 @@ def find_pose(state, present, robot, raster, seed, life, width, height):
     return False
 
 
-@kernel
-def draw_weights(states, lives, seed):
+@linked((BYTES, INDICES, types.uint64), (STATE,))
+def draw_weights(states, lives, seed, functions):
     """Draw the weights of L states from U[0, 1)."""
-    for n in range(len(states)):
-        weights = states[n].weights
+    for n in range(len(lives)):
+        weights = state_at(states, n).weights
         rows, columns = weights.shape
         for b in range(rows):
             for w in range(columns):
@@ -71,21 +79,13 @@ def draw_weights(states, lives, seed):
 
 
 def born(
-    mind: Mind, parameters: np.record, features: int, lives: int, weights: NDArray | None
+    counts: Counts, parameters: np.record, lives: int, weights: NDArray | None
 ) -> NDArray[np.void]:
     """Return the states [L] of lives at birth, still without a place.
 
     `weights` [B, W] or [L, B, W] are the networks they are born with; None leaves them at 0.
     """
-    dtype = state_dtype(
-        len(parameters.law),
-        len(mind.drives),
-        len(mind.behaviours),
-        features,
-        mind.learning.hidden_units,
-        mind.weight_count(features),
-    )
-    states = np.zeros(lives, dtype)
+    states = np.zeros(lives, STATE.dtype(counts._asdict()))
     states["values"] = parameters.start
     states["previous"] = parameters.start
     states["behaviour"] = -1

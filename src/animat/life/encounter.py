@@ -17,6 +17,7 @@ from animat.mind.affordance import CUSTOM_ESTIMATOR
 from animat.mind.agents import ACCEPT_ALL, ASK_TRUTH
 from animat.mind.behaviours import APPROACH, LEAVE
 from animat.numerics.compiled import compiled
+from animat.numerics.linked import any_custom
 from animat.numerics.streams import FEATURES, SELECTION, uniforms
 
 
@@ -31,7 +32,7 @@ def look_around(state, mind, robot, raster, present, functions, seed, life):
     perceive(state, mind, raster.features[raster.site_type[site]], seed, life)
     judge(state, mind, raster.affords[raster.site_type[site]], functions)
     luck, _, _, _ = uniforms(seed, life, SELECTION, state.step)
-    state.asked = failure.SELECTOR
+    failure.asks(state, failure.SELECTOR)
     chosen = selection.select(
         mind.selector, state.drives, state.estimates, mind.serves, luck, functions.selector
     )
@@ -78,7 +79,7 @@ def perceive(state, mind, features, seed, life):
 @compiled
 def judge(state, mind, affords, functions):
     """Estimate how likely the object perceived affords each behaviour."""
-    state.asked = failure.ESTIMATOR
+    failure.asks(state, failure.ESTIMATOR)
     for b in range(len(state.estimates)):
         if mind.judge == ASK_TRUTH:
             state.estimates[b] = affords[mind.needs[b]]
@@ -90,7 +91,8 @@ def judge(state, mind, affords, functions):
                 state.hidden,
                 functions.estimator,
             )
-            if mind.estimator == CUSTOM_ESTIMATOR and not math.isfinite(state.estimates[b]):
+            custom = any_custom() and mind.estimator == CUSTOM_ESTIMATOR
+            if custom and not math.isfinite(state.estimates[b]):
                 failure.fail(state, failure.ESTIMATOR, 0.0, 0.0)
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from animat.life.scenario import LifeError, Setting
 from animat.mind.functions import Functions
 from animat.numerics.compiled import compiled
+from animat.numerics.linked import any_custom
 
 LAW, DRIVES, SELECTOR, ESTIMATOR, LEARNER, WANDER = range(1, 7)
 """The roles of custom functions as `asked` and `failure` of a state know them; 0 is none."""
@@ -25,6 +26,13 @@ likelihoods are estimates, not a number before they were asked."""
 
 class FailedLifeError(LifeError):
     """A life failed: a custom function raised, or a number is not finite any more."""
+
+
+@compiled
+def asks(state, role):
+    """Note that the function of a role is called next, should it raise; built-in ones cannot."""
+    if any_custom():
+        state.asked = role
 
 
 @compiled

@@ -20,9 +20,10 @@ from animat.life.failure import FailedLifeError
 from animat.life.kernels import live_recorded
 from animat.life.scenario import LifeError, Setting, bring_together
 from animat.life.summary import death_of, summary
-from animat.life.trace import row_dtype, table
+from animat.life.trace import ROW, table
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
+from animat.numerics.layout import raw
 from animat.numerics.threads import attempt
 from animat.robot.khepera import Khepera
 from animat.world.world import World
@@ -260,7 +261,7 @@ def lived(
     start = moment.step
     ring = choice is not None and choice.last is not None
     length = 0 if choice is None else choice.last or SLICE // 4
-    rows = np.zeros(length, row_dtype(moment.states.dtype))
+    rows = np.zeros(length, ROW.dtype(moment.setting.counts._asdict()))
     while moment.step < steps and not moment.state.dead:
         before = moment.step
         until = min(before + SLICE, steps)
@@ -296,24 +297,10 @@ def live_rows(
     Raises FailedLifeError.
     """
     setting = moment.setting
-    return _unfailing(
-        moment,
-        until,
-        lambda: live_recorded(
-            moment.state,
-            moment.present[0],
-            np.uint64(moment.index),
-            setting.mind_parameters,
-            setting.robot_parameters,
-            setting.raster,
-            setting.functions,
-            np.uint64(moment.seed),
-            until,
-            rows,
-            every,
-            ring,
-        ),
-    )
+    life = raw(moment.states), moment.present, np.array([moment.index], np.uint64)
+    asked = moment.seed, until, raw(rows), len(rows), every, ring
+    call = live_recorded.of(setting.counts, setting.functions)
+    return _unfailing(moment, until, lambda: call(*life, *setting.constants, *asked))
 
 
 def _unfailing(moment: Moment, until: int, call: Callable[[], Any]) -> Any:

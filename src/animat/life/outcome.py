@@ -8,6 +8,7 @@ from animat.life.sight import OUT_OF_SIGHT, distance_to
 from animat.life.state import DIED, FAILED, HIGH, LOW, SUCCEEDED, TRAINED
 from animat.mind import affordance, drives, homeostasis
 from animat.numerics.compiled import compiled
+from animat.numerics.linked import any_custom
 from animat.numerics.streams import OUTCOMES, PLACEMENT, uniforms
 
 
@@ -49,11 +50,12 @@ def suffer(state, mind, effects, functions):
         state.aftermath[v] = state.values[v] + effects[v]
         state.changes_after[v] = state.changes[v] + effects[v]
     if mind.learns:
-        state.asked = failure.DRIVES
+        failure.asks(state, failure.DRIVES)
         drives.raise_drives(
             state.aftermath, state.changes_after, mind, state.drives_after, functions.drives
         )
-        if mind.error == drives.CUSTOM_DRIVES and not drives.all_finite(state.drives_after):
+        custom = any_custom() and mind.error == drives.CUSTOM_DRIVES
+        if custom and not drives.all_finite(state.drives_after):
             failure.fail(state, failure.DRIVES, 0.0, 0.0)
         acting = mind.serves[state.behaviour]
         variation = state.drives_after[acting] - state.drives[acting]
@@ -67,7 +69,7 @@ def train(state, mind, target, functions):
     """Train the network of the behaviour that was run towards what came of it."""
     state.event |= TRAINED
     state.trainings += 1
-    state.asked = failure.LEARNER
+    failure.asks(state, failure.LEARNER)
     weights = state.weights[state.behaviour]
     affordance.learn(
         mind.learner,
@@ -80,7 +82,8 @@ def train(state, mind, target, functions):
         mind.biases,
         functions.learner,
     )
-    if mind.learner == affordance.CUSTOM_LEARNER and not drives.all_finite(weights):
+    custom = any_custom() and mind.learner == affordance.CUSTOM_LEARNER
+    if custom and not drives.all_finite(weights):
         failure.fail(state, failure.LEARNER, 0.0, 0.0)
 
 

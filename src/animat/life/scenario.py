@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +11,13 @@ from animat.files.arguments import boolean, instance
 from animat.files.settings import SettingsError
 from animat.files.validation_errors import plain
 from animat.life.birth import born, clear_biases, draw_weights, place
+from animat.life.state import Counts
 from animat.mind.functions import BUILT_IN, Functions
 from animat.mind.mind import Mind
 from animat.mind.parameters import parameters
 from animat.mind.trial import Surroundings, try_functions
 from animat.names import LIKELIHOOD, spelled
+from animat.numerics.layout import raw
 from animat.robot.khepera import Khepera
 from animat.world.raster import Raster
 from animat.world.world import World
@@ -26,7 +28,10 @@ class LifeError(SettingsError):
 
 
 class Setting(NamedTuple):
-    """What lives are lived in: checked settings, and what the kernel reads of them."""
+    """What lives are lived in: checked settings, and what the kernel reads of them.
+
+    `constants` are mind, robot and raster as kernels take them.
+    """
 
     mind: Mind
     robot: Khepera
@@ -35,6 +40,8 @@ class Setting(NamedTuple):
     robot_parameters: np.record
     raster: Raster
     functions: Functions
+    counts: Counts
+    constants: tuple[NDArray[Any], NDArray[Any], Raster]
 
     def begin(
         self, seed: int, lives: NDArray[np.uint64], weights: NDArray[np.float64] | None = None
@@ -46,17 +53,15 @@ class Setting(NamedTuple):
         """
         if weights is None and self.mind.networks is not None:
             weights = self.mind.networks.weights
-        features = self.raster.features.shape[1]
-        states = born(self.mind, self.mind_parameters, features, len(lives), weights)
+        states = born(self.counts, self.mind_parameters, len(lives), weights)
         present = np.zeros((len(lives), max(1, self.world.n_sites)), np.uint8)
         present[:, : self.world.n_objects] = 1
         arena = self.world.arena
-        homeless = place(
-            states,
+        homeless = place.of(self.counts)(
+            raw(states),
             present,
             lives,
-            self.robot_parameters,
-            self.raster,
+            *self.constants[1:],
             np.uint64(seed),
             float(arena.width),
             float(arena.height),
@@ -64,9 +69,9 @@ class Setting(NamedTuple):
         if homeless:
             raise LifeError(f'world "{self.world.name}" has no room for the robot to start')
         if weights is None:
-            draw_weights(states, lives, np.uint64(seed))
+            draw_weights.of(self.counts)(raw(states), lives, np.uint64(seed))
             if not self.mind.learning.biases:
-                clear_biases(states, features, self.mind.learning.hidden_units)
+                clear_biases(states, self.counts.F, self.counts.H)
         return states, present
 
 
@@ -96,7 +101,19 @@ def bring_together(
         hidden = mind.learning.hidden_units
         around = Surroundings(raster.features, hidden, body.sensor_cosine, body.sensor_y)
         try_functions(functions, mind_parameters, around)
-    return Setting(mind, robot, world, mind_parameters, body, raster, functions)
+    features, hidden = raster.features.shape[1], mind.learning.hidden_units
+    counts = Counts(
+        len(mind_parameters.law),
+        len(mind.drives),
+        len(mind.behaviours),
+        len(robot.sensors),
+        features,
+        hidden,
+        mind.weight_count(features),
+    )
+    records = [raw(np.array([one], one.dtype)) for one in (mind_parameters, body)]
+    constants = records[0], records[1], raster
+    return Setting(mind, robot, world, mind_parameters, body, raster, functions, counts, constants)
 
 
 def checked_parameters(mind: Mind, world: World) -> np.record:

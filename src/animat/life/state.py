@@ -7,9 +7,12 @@ hashed, it can be compared.
 
 from __future__ import annotations
 
-import numpy as np
+from typing import NamedTuple
 
-from animat.robot.khepera import SENSORS
+import numpy as np
+from numba import types
+
+from animat.numerics.layout import Field, Layout
 
 ABANDONED = 8
 """How many objects at once a robot remembers having left and not yet lost sight of."""
@@ -37,71 +40,87 @@ EVENTS = (
 LOW, HIGH = range(2)
 
 
-def state_dtype(
-    variables: int, drives: int, behaviours: int, features: int, hidden: int, weights: int
-) -> np.dtype:
-    """Return the layout of a state.
+REAL, WHOLE = np.float64, np.int64
 
-    V variables, D drives, B behaviours, F features, H hidden units and W weights a network.
+STATE = Layout(
+    "state",
+    (
+        # body
+        Field("x", REAL),  # mm
+        Field("y", REAL),  # mm
+        Field("heading", REAL),  # rad
+        Field("left", WHOLE),  # motor commands of this step
+        Field("right", WHOLE),
+        Field("readings", WHOLE, ("N",)),  # infrared, this step
+        # needs
+        Field("values", REAL, ("V",)),
+        Field("previous", REAL, ("V",)),  # at the last step's drives
+        Field("changes", REAL, ("V",)),  # since then
+        Field("drives", REAL, ("D",)),
+        # what it is doing
+        Field("mode", WHOLE),
+        Field("mode_steps", WHOLE),
+        Field("behaviour", WHOLE),
+        Field("site", WHOLE),
+        Field("abandoned", WHOLE, (ABANDONED,)),
+        Field("memory", REAL, (4,)),  # of the wander controller
+        # what it knows
+        Field("features", REAL, ("F",)),  # of the object met, as perceived
+        Field("estimates", REAL, ("B",)),  # of the object met
+        Field("likelihoods", REAL, ("B",)),  # when last chosen; not a number before
+        Field("weights", REAL, ("B", "W")),
+        # this step
+        Field("reward", WHOLE),
+        Field("event", WHOLE),
+        # the life so far
+        Field("step", WHOLE),  # steps lived
+        Field("dead", np.bool_),
+        Field("death_variable", WHOLE),
+        Field("death_side", WHOLE),
+        Field("death_cause", WHOLE),
+        Field("encounters", WHOLE),
+        Field("acts", WHOLE),
+        Field("successes", WHOLE),
+        Field("disregarded", WHOLE),
+        Field("unreached", WHOLE),
+        Field("blocked", WHOLE),
+        Field("trainings", WHOLE),
+        Field("drive_sum", REAL),  # over the steps, of the mean of the drives
+        Field("acts_by_behaviour", WHOLE, ("B",)),
+        Field("successes_by_behaviour", WHOLE, ("B",)),
+        # room to work in; holds nothing from one step to the next
+        Field("hidden", REAL, ("H",)),
+        Field("aftermath", REAL, ("V",)),
+        Field("drives_after", REAL, ("D",)),
+        Field("changes_after", REAL, ("V",)),
+        # of custom functions: see animat.life.failure
+        Field("asked", WHOLE),  # the role that was called last
+        Field("failure", WHOLE),  # the role that ended the life
+        Field("given", REAL, (2,)),  # what it gave
+    ),
+)
+"""A state: V variables, D drives, B behaviours, N sensors; F features, H hidden units, W weights a
+network."""
+
+state_at = STATE.at
+
+INDICES = types.Array(types.uint64, 1, "C")
+PRESENT = types.Array(types.uint8, 2, "C")
+"""What a kernel is given beside states [L]: the indices of the lives [L], and which sites hold an
+object [L, S]."""
+
+
+class Counts(NamedTuple):
+    """What the shapes of the records of lives are made of.
+
+    V variables, D drives, B behaviours, N sensors; F features, H hidden units and W weights of a
+    network.
     """
-    real, whole = np.float64, np.int64
-    return np.dtype(
-        (
-            np.record,
-            [
-                # body
-                ("x", real),  # mm
-                ("y", real),  # mm
-                ("heading", real),  # rad
-                ("left", whole),  # motor commands of this step
-                ("right", whole),
-                ("readings", whole, (SENSORS,)),  # infrared, this step
-                # needs
-                ("values", real, (variables,)),
-                ("previous", real, (variables,)),  # at the last step's drives
-                ("changes", real, (variables,)),  # since then
-                ("drives", real, (drives,)),
-                # what it is doing
-                ("mode", whole),
-                ("mode_steps", whole),
-                ("behaviour", whole),
-                ("site", whole),
-                ("abandoned", whole, (ABANDONED,)),
-                ("memory", real, (4,)),  # of the wander controller
-                # what it knows
-                ("features", real, (features,)),  # of the object met, as perceived
-                ("estimates", real, (behaviours,)),  # of the object met
-                ("likelihoods", real, (behaviours,)),  # when last chosen; not a number before
-                ("weights", real, (behaviours, weights)),
-                # this step
-                ("reward", whole),
-                ("event", whole),
-                # the life so far
-                ("step", whole),  # steps lived
-                ("dead", np.bool_),
-                ("death_variable", whole),
-                ("death_side", whole),
-                ("death_cause", whole),
-                ("encounters", whole),
-                ("acts", whole),
-                ("successes", whole),
-                ("disregarded", whole),
-                ("unreached", whole),
-                ("blocked", whole),
-                ("trainings", whole),
-                ("drive_sum", real),  # over the steps, of the mean of the drives
-                ("acts_by_behaviour", whole, (behaviours,)),
-                ("successes_by_behaviour", whole, (behaviours,)),
-                # room to work in; holds nothing from one step to the next
-                ("hidden", real, (hidden,)),
-                ("aftermath", real, (variables,)),
-                ("drives_after", real, (drives,)),
-                ("changes_after", real, (variables,)),
-                # of custom functions: see animat.life.failure
-                ("asked", whole),  # the role that was called last
-                ("failure", whole),  # the role that ended the life
-                ("given", real, (2,)),  # what it gave
-            ],
-        ),
-        align=True,
-    )
+
+    V: int
+    D: int
+    B: int
+    N: int
+    F: int
+    H: int
+    W: int

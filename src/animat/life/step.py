@@ -23,6 +23,7 @@ from animat.life.state import BLOCKED, NO_SITE, REACHED, UNREACHED
 from animat.mind import behaviours, drives, homeostasis
 from animat.mind.behaviours import ACT, APPROACH, CUSTOM_WANDER, LEAVE, WANDER
 from animat.numerics.compiled import compiled
+from animat.numerics.linked import any_custom
 from animat.numerics.streams import MOTORS, SENSORS, bits, uniforms
 from animat.numerics.streams import WANDER as WANDERING
 from animat.robot.collision import collide
@@ -70,19 +71,18 @@ def sense(state, robot, raster, present, seed, life):
 @compiled
 def metabolise(state, mind, functions):
     """Let the variables drift for one step and the drives follow them; end a life that must."""
-    state.asked = failure.LAW
+    failure.asks(state, failure.LAW)
     homeostasis.metabolise(state.values, mind, functions.law)
     for v in range(len(state.values)):
         state.changes[v] = state.values[v] - state.previous[v]
         state.previous[v] = state.values[v]
-    state.asked = failure.DRIVES
+    failure.asks(state, failure.DRIVES)
     drives.raise_drives(state.values, state.changes, mind, state.drives, functions.drives)
     total = 0.0
     for drive in state.drives:
         total += drive
     state.drive_sum += total / len(state.drives)
-    # A value that is not a number leaves no built-in drive a number.
-    if mind.error == drives.CUSTOM_DRIVES or not math.isfinite(total):
+    if any_custom():
         check_needs(state, mind)
     perish(state, mind, homeostasis.METABOLISM)
 
@@ -143,7 +143,7 @@ def search(state, mind, robot, functions, seed, life):
     luck_a = luck_b = 0.0
     if behaviours.needs_luck(mind.wander, state.memory):
         luck_a, luck_b, _, _ = uniforms(seed, life, WANDERING, state.step)
-    state.asked = failure.WANDER
+    failure.asks(state, failure.WANDER)
     left, right = behaviours.wander(
         mind.wander,
         state.readings,
@@ -156,7 +156,11 @@ def search(state, mind, robot, functions, seed, life):
         mind.turn_speed,
         functions.wander,
     )
-    if mind.wander == CUSTOM_WANDER and not can_be_driven(left, right, robot.max_motor):
+    if (
+        any_custom()
+        and mind.wander == CUSTOM_WANDER
+        and not can_be_driven(left, right, robot.max_motor)
+    ):
         failure.fail(state, failure.WANDER, left, right)
         left = right = 0
     state.left = int(left)

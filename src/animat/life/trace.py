@@ -14,12 +14,13 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from animat.life.state import EVENTS, NO_SITE
+from animat.life.state import EVENTS, NO_SITE, STATE
 from animat.mind.behaviours import ACT, APPROACH, LEAVE, WANDER
 from animat.mind.drives import strongest
 from animat.mind.mind import Mind
 from animat.names import MODES, TRACE, spelled
 from animat.numerics.compiled import compiled
+from animat.numerics.layout import Field, Layout
 from animat.robot.khepera import SENSORS
 from animat.world.world import World
 
@@ -27,12 +28,23 @@ PLAIN = ("step", "x", "y", "heading", "left", "right", "site", "reward")
 """The columns that hold a field of a row as it is."""
 
 
-def row_dtype(state: np.dtype) -> np.dtype:
-    """Return the layout of a row for states of the given layout."""
-    kept = ("x", "y", "heading", "left", "right", "readings", "values", "drives")
-    kept += ("mode", "behaviour", "site", "likelihoods", "reward", "event")
-    fields = [(name, state[name]) for name in kept]
-    return np.dtype((np.record, [("step", np.int64), *fields, ("winner", np.int64)]), align=True)
+KEPT = (
+    *("x", "y", "heading", "left", "right", "readings", "values", "drives"),
+    *("mode", "behaviour", "site", "likelihoods", "reward", "event"),
+)
+"""What a row takes from a state, under the same name."""
+
+ROW = Layout(
+    "row",
+    (
+        Field("step", np.int64),
+        *(field for field in (*STATE.single, *STATE.arrays) if field.name in KEPT),
+        Field("winner", np.int64),
+    ),
+)
+"""A row of a trace."""
+
+row_at = ROW.at
 
 
 @compiled

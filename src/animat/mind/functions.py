@@ -22,6 +22,7 @@ from animat.files.settings import SettingsError
 from animat.mind.loading import load
 from animat.numerics.checked import SelfCallError, checked
 from animat.numerics.compiled import compiled
+from animat.numerics.linked import Role, slot
 from animat.numerics.snapshot import share_identity, snapshot
 
 SIGNATURES = {
@@ -52,6 +53,18 @@ ARGUMENTS = {
 }
 """What each replaceable function is given. Only `out`, `weights`, `hidden` and `memory` can be
 written to; the other arrays are shared by lives on several threads."""
+
+RESULTS = {
+    "law": REAL,
+    "drives": types.none,
+    "selector": WHOLE,
+    "estimator": REAL,
+    "learner": types.none,
+    "wander": types.UniTuple(REAL, 2),
+}
+"""What a step takes from each replaceable function."""
+
+ROLES = {name: Role(given, RESULTS[name]) for name, given in ARGUMENTS.items()}
 
 ALLOCATION = ("NRT required", "Only accept returning of array")
 """What the compiler says of a function that needs memory of its own."""
@@ -112,6 +125,9 @@ def unused_wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
 BUILT_IN = Functions(
     unused_law, unused_drives, unused_selector, unused_estimator, unused_learner, unused_wander
 )
+
+SLOTS = Functions(**{name: slot(name, role) for name, role in ROLES.items()})
+"""What a kernel calls where a custom function is to be: what is linked into it."""
 
 
 def resolve(role: str, function: str | Callable[..., Any], *, check: bool = False) -> Any:

@@ -13,6 +13,7 @@ from animat.mind.mind import Mind
 from animat.mind.physiology import Variable
 from animat.numerics.compiled import kernel
 from animat.numerics.elementary import exponential
+from animat.numerics.layout import Field, Layout
 
 SHARED = (
     "likelihood_threshold",
@@ -29,72 +30,70 @@ SHARED = (
 """The settings of a mind that the step reads as they are, under the same name."""
 
 
-def mind_dtype(variables: int, drives: int, behaviours: int) -> np.dtype:
-    """Return the layout of a mind's parameters with V variables, D drives and B behaviours."""
-    per_variable = (variables,)
-    real, whole = np.float64, np.int64
-    return np.dtype(
-        (
-            np.record,
-            [
-                ("law", whole, per_variable),
-                ("low", real, per_variable),
-                ("high", real, per_variable),
-                ("rate", real, per_variable),
-                ("factor", real, per_variable),
-                ("set_point", real, per_variable),
-                ("sense", real, per_variable),
-                ("start", real, per_variable),
-                ("dies_below", real, per_variable),
-                ("dies_above", real, per_variable),
-                ("drift_floor", real, per_variable),
-                ("drift_ceiling", real, per_variable),
-                ("act_floor", real, per_variable),
-                ("act_ceiling", real, per_variable),
-                ("a", real, (drives, variables)),
-                ("b", real, (drives, variables)),
-                ("serves", whole, (behaviours,)),
-                ("needs", whole, (behaviours,)),
-                ("success", real, (behaviours, variables)),
-                ("failure", real, (behaviours, variables)),
-                ("likelihood_threshold", real),
-                ("encounter_range", real),
-                ("contact_range", real),
-                ("feature_noise", real),
-                ("learning_rate", real),
-                ("learning_threshold", real),
-                ("learning_cycles", whole),
-                ("error", whole),
-                ("selector", whole),
-                ("estimator", whole),
-                ("learner", whole),
-                ("wander", whole),
-                ("judge", whole),
-                ("interaction_steps", whole),
-                ("approach_steps", whole),
-                ("leave_steps", whole),
-                ("cruise_speed", whole),
-                ("turn_speed", whole),
-                ("gated", np.bool_),
-                ("learns", np.bool_),
-                ("mortal", np.bool_),
-                ("consumed", np.bool_),
-                ("biases", np.bool_),
-            ],
-        ),
-        align=True,
-    )
+REAL, WHOLE = np.float64, np.int64
+
+MIND = Layout(
+    "mind",
+    (
+        Field("law", WHOLE, ("V",)),
+        Field("low", REAL, ("V",)),
+        Field("high", REAL, ("V",)),
+        Field("rate", REAL, ("V",)),
+        Field("factor", REAL, ("V",)),
+        Field("set_point", REAL, ("V",)),
+        Field("sense", REAL, ("V",)),
+        Field("start", REAL, ("V",)),
+        Field("dies_below", REAL, ("V",)),
+        Field("dies_above", REAL, ("V",)),
+        Field("drift_floor", REAL, ("V",)),
+        Field("drift_ceiling", REAL, ("V",)),
+        Field("act_floor", REAL, ("V",)),
+        Field("act_ceiling", REAL, ("V",)),
+        Field("a", REAL, ("D", "V")),
+        Field("b", REAL, ("D", "V")),
+        Field("serves", WHOLE, ("B",)),
+        Field("needs", WHOLE, ("B",)),
+        Field("success", REAL, ("B", "V")),
+        Field("failure", REAL, ("B", "V")),
+        Field("likelihood_threshold", REAL),
+        Field("encounter_range", REAL),
+        Field("contact_range", REAL),
+        Field("feature_noise", REAL),
+        Field("learning_rate", REAL),
+        Field("learning_threshold", REAL),
+        Field("learning_cycles", WHOLE),
+        Field("error", WHOLE),
+        Field("selector", WHOLE),
+        Field("estimator", WHOLE),
+        Field("learner", WHOLE),
+        Field("wander", WHOLE),
+        Field("judge", WHOLE),
+        Field("interaction_steps", WHOLE),
+        Field("approach_steps", WHOLE),
+        Field("leave_steps", WHOLE),
+        Field("cruise_speed", WHOLE),
+        Field("turn_speed", WHOLE),
+        Field("gated", np.bool_),
+        Field("learns", np.bool_),
+        Field("mortal", np.bool_),
+        Field("consumed", np.bool_),
+        Field("biases", np.bool_),
+    ),
+)
+"""A mind's parameters, with V variables, D drives and B behaviours."""
+
+mind_at = MIND.at
 
 
 def parameters(mind: Mind, affordances: Sequence[str]) -> np.record:
-    """Return everything the step reads of a mind, as one record of `mind_dtype`.
+    """Return everything the step reads of a mind, as one record of MIND.
 
     `affordances` are the names of the columns of the world's affordance table. Raises
     ValueError where a behaviour needs one that the world does not know.
     """
     variables = mind.resolved_variables()
-    dtype = mind_dtype(len(variables), len(mind.drives), len(mind.behaviours))
-    record = np.zeros(1, dtype)[0]
+    counts = {"V": len(variables), "D": len(mind.drives), "B": len(mind.behaviours)}
+    record = np.zeros(1, MIND.dtype(counts))[0]
     for v, variable in enumerate(variables.values()):
         _fill_variable(record, v, variable, mind)
     shrink(record.rate, record.factor)

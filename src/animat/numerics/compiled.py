@@ -28,7 +28,7 @@ from typing import Any, TypeVar
 
 import numba
 from numba.core import config, utils
-from numba.core.caching import FunctionCache
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 from numba.core.event import Event, Listener, register
 
 from animat.errors import SettingsError
@@ -67,12 +67,31 @@ def kernel(function: Function) -> Function:
     except RuntimeError:  # numba found none of its places writable
         raise SettingsError(NO_PLACE) from None
     if dispatcher is not function:
-        kept = dispatcher._cache._cache_file
-        kept._source_stamp = engine_stamp()
-        kept._load_index = _or(dict, kept._load_index)
-        kept._load_data = _or(lambda: None, kept._load_data)
-        kept.save = _or(lambda: None, kept.save)  # on a full disk, the next start compiles again
+        _stamped(dispatcher._cache._cache_file)
     return _identified(dispatcher, function)
+
+
+def kept(function: Callable[..., Any]) -> Any:
+    """Return the file that keeps what is compiled of a function, with `load` and `save` by keys.
+
+    Raises SettingsError where there is no place to keep it.
+    """
+    try:
+        where = CompileResultCacheImpl(function)
+        where.locator.ensure_cache_path()
+    except (RuntimeError, OSError):
+        raise SettingsError(NO_PLACE) from None
+    path = where.locator.get_cache_path()
+    return _stamped(IndexDataCacheFile(path, where.filename_base, engine_stamp()))
+
+
+def _stamped(kept: Any) -> Any:
+    """Let what is kept be of this engine alone, and what cannot be read or written be no error."""
+    kept._source_stamp = engine_stamp()
+    kept._load_index = _or(dict, kept._load_index)
+    kept._load_data = _or(lambda: None, kept._load_data)
+    kept.save = _or(lambda: None, kept.save)  # on a full disk, the next start compiles again
+    return kept
 
 
 def _or(otherwise: Callable[[], Any], load: Callable[..., Any]) -> Callable[..., Any]:
@@ -114,21 +133,24 @@ def _identified(dispatcher: Any, function: Callable[..., Any]) -> Any:
     return dispatcher
 
 
-class _Announcement(Listener):
-    """Tell once in a process that a kernel is compiled, rather than read from disk.
+@cache
+def announce() -> None:
+    """Tell once in a process that the simulator is compiled, rather than read from disk.
 
     A warning of the logger "animat" is seen on the error output of a script, a notebook and the
     command line, and `logging.getLogger("animat").setLevel("ERROR")` silences it.
     """
+    logging.getLogger("animat").warning("compiling the simulator, once, some 10 s ...")
 
-    told = False
+
+class _Announcement(Listener):
+    """Tell it of a kernel that Numba compiles."""
 
     def on_start(self, event: Event) -> None:
         dispatcher: Any = event.data["dispatcher"]  # pyright: ignore[reportOptionalSubscript]
         ours = dispatcher.py_func.__module__.startswith("animat.")
-        if not self.told and ours and isinstance(dispatcher._cache, FunctionCache):
-            self.told = True
-            logging.getLogger("animat").warning("compiling the simulator, once, some 20 s ...")
+        if ours and isinstance(dispatcher._cache, FunctionCache):
+            announce()
 
     def on_end(self, event: Event) -> None:
         pass

@@ -64,6 +64,14 @@ def lasting_identity(function: Any) -> str:
     return found.text
 
 
+def cache_key(function: Any) -> str | None:
+    """Return what machine code of a compiled function is kept under; None if it is not kept."""
+    found = _IDENTITIES.get(function)
+    if found is not None:
+        return None if found.unknown else function._uuid
+    return function._uuid if function in STEP_OPTIONS else None
+
+
 def share_identity(twin: Any, function: Any) -> None:
     """Give a function compiled otherwise from a snapshot the identity of that snapshot."""
     _IDENTITIES[twin] = _identity_of(function)

@@ -25,7 +25,7 @@ from animat.files.checksummed import sealing, unseal
 from animat.files.settings import SettingsError
 from animat.life.life import LONGEST, Life, Moment, Progress, birth, check, live_rows, lived
 from animat.life.scenario import LifeError, Setting
-from animat.life.trace import row_dtype, table
+from animat.life.trace import ROW, table
 from animat.names import KEPT
 from animat.recording.checkpoint import Kept, check_fields, keep, restored
 from animat.recording.divergence import Difference, kept_fields, kept_in, parted
@@ -176,7 +176,7 @@ class Recording:
 
 def _lived_part(moment: Moment, head: Head, size: int, until: int) -> pa.Table:
     """Live a life on, in place, by `size` steps or up to `until`; return its rows and moments."""
-    rows = np.zeros(size, row_dtype(moment.states.dtype))
+    rows = np.zeros(size, ROW.dtype(moment.setting.counts._asdict()))
     kept: dict[int, Kept] = {}
     filled = 0
     while filled < size and moment.step < until and not moment.state.dead:

@@ -17,9 +17,9 @@ from pydantic import Field, model_validator
 from animat.files.settings import Settings
 from animat.numerics.compiled import kernel
 from animat.numerics.elementary import sine_cosine
+from animat.robot.parameters import RING_POINTS, ROBOT
 
 SENSORS = 8
-RING_POINTS = 8
 
 MICHEL1996, LINEAR = 0, 1
 MODELS = {"michel1996": MICHEL1996, "linear": LINEAR}
@@ -27,41 +27,6 @@ MODELS = {"michel1996": MICHEL1996, "linear": LINEAR}
 LINEAR_REACH = 50.0  # mm
 REACH = {"michel1996": 58.0, "linear": LINEAR_REACH}
 """How far before it a sensor of each model sees anything, in mm."""
-
-ROBOT = np.dtype(
-    (
-        np.record,
-        np.dtype(
-            [
-                ("radius", np.float64),
-                ("wheel_base", np.float64),
-                ("step_mm", np.float64),
-                ("max_motor", np.int64),
-                ("motor_noise", np.bool_),
-                ("position_noise", np.float64),
-                ("turn_noise", np.float64),
-                ("ring_radius", np.float64),
-                ("ring_x", np.float64, (RING_POINTS,)),
-                ("ring_y", np.float64, (RING_POINTS,)),
-                ("infrared", np.int64),
-                ("infrared_noise", np.bool_),
-                ("reach", np.float64),
-                ("sensor_radius", np.float64),
-                ("sensor_x", np.float64, (SENSORS,)),
-                ("sensor_y", np.float64, (SENSORS,)),
-                ("sensor_cosine", np.float64, (SENSORS,)),
-                ("sensor_sine", np.float64, (SENSORS,)),
-            ],
-            align=True,
-        ),
-    )
-)
-"""What a step knows of its robot; `Khepera.parameters` fills it.
-
-`ring_x`, `ring_y` are the collision points in the robot's frame, from the front
-counter-clockwise; `infrared` is MICHEL1996 or LINEAR; `sensor_radius` is how far (mm) the farthest
-sensor is from the centre; the rest are the settings of the same names.
-"""
 
 
 class Sensor(Settings):
@@ -151,8 +116,8 @@ class Khepera(Settings):
         return self
 
     def parameters(self) -> np.record:
-        """Return the record of dtype ROBOT that compiled functions read."""
-        robot = np.zeros((), ROBOT)
+        """Return the record of ROBOT that compiled functions read."""
+        robot = np.zeros((), ROBOT.dtype({"N": len(self.sensors)}))
         for name in (
             "radius",
             "wheel_base",

@@ -14,6 +14,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numba import types
 from numpy.typing import NDArray
 
 from animat.files.settings import SettingsError
@@ -62,6 +63,23 @@ class Raster(NamedTuple):
     site_type: NDArray[np.int64]  # [S] index into the world's object types
     features: NDArray[np.float64]  # [T, F] what the networks see
     affords: NDArray[np.float64]  # [T, A] probabilities
+
+
+RASTER = types.NamedTuple(
+    (
+        *(types.float64, types.float64, types.int64, types.int64),
+        types.Array(types.uint8, 1, "C"),
+        types.Array(types.int16, 2, "C"),
+        types.Array(types.float32, 2, "C"),
+        types.Array(types.int16, 3, "C"),
+        types.Array(types.float32, 3, "C"),
+        *(types.Array(types.float64, 1, "C"), types.Array(types.float64, 1, "C")),
+        types.Array(types.int64, 1, "C"),
+        *(types.Array(types.float64, 2, "C"), types.Array(types.float64, 2, "C")),
+    ),
+    Raster,
+)
+"""What a kernel is told of the type of a raster."""
 
 
 def draw(

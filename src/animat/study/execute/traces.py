@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from animat.life.batch import Batch, BatchResult, Snapshot, advance
 from animat.life.life import Moment, TraceChoice, lived
-from animat.life.trace import row_dtype, table
+from animat.life.trace import ROW, table
 from animat.names import WHICH
 
 
@@ -37,7 +37,7 @@ class Traced:
     def schema(self) -> pa.Schema:
         """Return the columns of these traces: `case`, `life`, and those of docs/tables.md."""
         setting = self.batch.setting
-        none = table(np.zeros(0, row_dtype(self.result.states.dtype)), setting.mind, setting.world)
+        none = table(np.zeros(0, ROW.dtype(setting.counts._asdict())), setting.mind, setting.world)
         names = [pa.field(name, pa.int64()) for name in WHICH]
         return pa.schema([*names, *none.schema])
 

@@ -1,0 +1,319 @@
+"""Kernels that are compiled once, and into which shapes and custom functions are linked.
+
+Numba would compile a kernel anew for every mind of another shape and for every custom function,
+for ten seconds each time. Here it is taken once as far as LLVM's unoptimised code: the *template*,
+which reads the shapes of records from tables (`layout.py`) and calls custom functions by the names
+of *slots*. For each shape and each custom function these are linked in, and LLVM optimises the
+whole, in a second or two; a step is as fast as if it had been compiled for them alone. Template and
+machine code are kept on disk. docs/decisions/linking.md says why.
+
+This leans on private parts of Numba; tests/numerics/test_linked.py tests each of them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+import numba
+from llvmlite import binding, ir
+from numba import _dynfunc, types  # pyright: ignore[reportAttributeAccessIssue]
+from numba.core import cgutils, config, typing
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.environment import Environment
+from numba.core.registry import cpu_target
+from numba.extending import intrinsic
+
+from animat.numerics.compiled import OPTIONS, announce, compiled, kept
+from animat.numerics.inlined import InlinedCompiler, inlined
+from animat.numerics.layout import Layout
+from animat.numerics.snapshot import cache_key
+
+SLOT, CUSTOM = "animat_slot_", "animat_any_custom"
+
+
+class Role(NamedTuple):
+    """What is asked of a function in a slot: the types it is given, and the one it returns."""
+
+    arguments: tuple[types.Type, ...]
+    result: types.Type
+
+
+class Names(NamedTuple):
+    """The symbols of a kernel: the one Python calls, the one it calls, and its environment."""
+
+    wrapper: str
+    function: str
+    environment: str
+
+
+class _Template(NamedTuple):
+    """A kernel as far as it can be compiled before shapes and functions are known.
+
+    `code`, LLVM's bitcode; `roles`, of the slots it calls; `layouts`, of the tables it reads.
+    """
+
+    code: bytes
+    names: Names
+    roles: tuple[str, ...]
+    layouts: tuple[str, ...]
+
+
+def slot(name: str, role: Role) -> Any:
+    """Return a compiled function that calls what will be linked into the slot of a role."""
+
+    def lower(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        kind = context.call_conv.get_function_type(role.result, role.arguments)
+        known = builder.module.globals.get(SLOT + name)
+        function = known or ir.Function(builder.module, kind, name=SLOT + name)
+        status, result = context.call_conv.call_function(
+            builder, function, role.result, role.arguments, given
+        )
+        with cgutils.if_unlikely(builder, status.is_error):
+            context.call_conv.return_status_propagate(builder, status)
+        return result
+
+    signature = typing.signature(role.result, *role.arguments)
+    call = _with_arguments(
+        "typing_context, {}", "found", len(role.arguments), found=(signature, lower)
+    )
+    return compiled(_with_arguments("{}", "call({})", len(role.arguments), call=intrinsic(call)))
+
+
+def _with_arguments(given: str, result: str, count: int, **around: Any) -> Callable[..., Any]:
+    """Return a function of so many arguments: Numba compiles no `*arguments` for a signature."""
+    arguments = ", ".join(f"a{n}" for n in range(count))
+    exec(f"def made({given.format(arguments)}): return {result.format(arguments)}", around)
+    around["made"].__module__ = __name__
+    return around["made"]
+
+
+@intrinsic
+def _any_custom(typing_context):
+    def lower(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        known = builder.module.globals.get(CUSTOM)
+        if known is None:
+            known = ir.GlobalVariable(builder.module, ir.IntType(8), CUSTOM)
+            known.linkage, known.global_constant = "weak", True
+            known.initializer = ir.IntType(8)(1)
+        return builder.trunc(builder.load(known), ir.IntType(1))
+
+    return typing.signature(types.boolean), lower
+
+
+@compiled
+def any_custom():
+    """Tell whether a slot holds a custom function; a constant where kernels are linked."""
+    return _any_custom()
+
+
+if getattr(config, "DISABLE_JIT", False):
+
+    def any_custom():
+        """Tell that a slot may hold a custom function."""
+        return True
+
+
+class Linked:
+    """A kernel of some layouts and roles; `of` gives it for shapes and functions.
+
+    `libraries` are what it has been compiled to in this process, each with its symbols.
+    """
+
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        arguments: tuple[types.Type, ...],
+        layouts: Iterable[Layout],
+        slots: Any,
+        roles: Mapping[str, Role],
+        idle: Iterable[Any],
+    ) -> None:
+        """Make a kernel of a Python function; see `linked`."""
+        self.function = function
+        self.name = f"{function.__module__}.{function.__qualname__}"
+        self._arguments, self._slots, self._roles = arguments, slots, roles
+        self._idle = frozenset(idle)
+        self._layouts = {layout.symbol: layout for layout in layouts}
+        self._template: _Template | None = None
+        self._made: dict[Any, Callable[..., Any]] = {}
+        self.libraries: list[tuple[Any, Names]] = []
+        self._disk: Any = None
+
+    def of(self, counts: Any, functions: Any = ()) -> Callable[..., Any]:
+        """Return the kernel for records of these counts, with these functions in its slots.
+
+        Both are named tuples; the counts have all that the layouts have.
+
+        It takes arguments of the types it was declared with, which it does not check. With
+        `NUMBA_DISABLE_JIT=1` it is the Python function.
+        """
+        if getattr(config, "DISABLE_JIT", False):
+            return lambda *arguments: self.function(*arguments, functions)
+        key = (counts, functions)
+        made = self._made.get(key)
+        if made is None:
+            with global_compiler_lock:
+                made = self._made.get(key) or self._kernel(counts._asdict(), functions)
+                self._made[key] = made
+        return made
+
+    def _kernel(self, counts: Mapping[str, int], functions: Any) -> Callable[..., Any]:
+        template = self._compiled()
+        own = [cache_key(getattr(functions, role)) for role in template.roles]
+        shape = [self._layouts[symbol].table(counts) for symbol in template.layouts]
+        key = repr((self.name, own, shape))
+        lasts = None not in own
+        codegen = cpu_target.target_context.codegen()
+        known = self._load(key) if lasts else None
+        if known is not None:
+            names, code = known
+            library = codegen.unserialize_library(code)
+        else:
+            prefix = f"animat_{hashlib.sha256(key.encode()).hexdigest()[:16]}_{len(self._made)}_"
+            library, names = self._library(template, counts, functions, prefix)
+            if lasts:
+                self._save(key, (names, library.serialize_using_object_code()))
+        self.libraries.append((library, names))
+        return _callable(library, names, self.function)
+
+    def _library(
+        self, template: _Template, counts: Mapping[str, int], functions: Any, prefix: str
+    ) -> tuple[Any, Names]:
+        """Return the machine code of a kernel, and the names of its symbols."""
+        module, names = self._linked(template, counts, functions, prefix)
+        library = cpu_target.target_context.codegen().create_library(names.function)
+        library.enable_object_caching()
+        library._final_module.link_in(module)
+        library.finalize()
+        return library, names
+
+    def _linked(
+        self, template: _Template, counts: Mapping[str, int], functions: Any, prefix: str
+    ) -> tuple[binding.ModuleRef, Names]:
+        """Return the template with all linked in, under names of its own, and these names."""
+        module = binding.parse_bitcode(template.code)
+        for role in template.roles:
+            module.link_in(_filling(role, self._roles[role], getattr(functions, role)))
+        for symbol in template.layouts:
+            table = self._layouts[symbol].table(counts)
+            words = ", ".join(f"i64 {word}" for word in table)
+            _define(module, symbol, f"[{len(table)} x i64] [{words}]")
+        custom = any(one not in self._idle for one in functions)
+        _define(module, CUSTOM, f"i8 {int(custom)}")
+        for role in template.roles:
+            module.get_function(SLOT + role).linkage = "internal"
+        # In one process there are many of a kernel, which must not take one for the other.
+        names = Names(*(prefix + name for name in template.names))
+        module.get_function(template.names.wrapper).name = names.wrapper
+        module.get_function(template.names.function).name = names.function
+        module.get_global_variable(template.names.environment).name = names.environment
+        return module, names
+
+    def _compiled(self) -> _Template:
+        """Return the template, from memory, from disk, or compiled."""
+        if self._template is None:
+            self._template = self._load("template")
+        if self._template is None:
+            announce()
+            self._template = self._compile()
+            self._save("template", self._template)
+        return self._template
+
+    def _compile(self) -> _Template:
+        count, around = (
+            len(self._arguments),
+            {"body": compiled(self.function), "slots": self._slots},
+        )
+        kernel = _with_arguments("{}", "body({}, slots)", count, **around)
+        dispatcher: Any = numba.njit(
+            pipeline_class=InlinedCompiler, no_cfunc_wrapper=True, **OPTIONS
+        )(kernel)
+        dispatcher.compile(self._arguments)
+        (overload,) = dispatcher.overloads.values()
+        described = overload.fndesc
+        overload.library._ensure_finalized()
+        module = overload.library._final_module
+        environment = cpu_target.target_context.get_env_name(described)
+        roles = [f.name.removeprefix(SLOT) for f in module.functions if f.name.startswith(SLOT)]
+        tables = [g.name for g in module.global_variables if g.name in self._layouts]
+        return _Template(
+            module.as_bitcode(),
+            Names(described.llvm_cpython_wrapper_name, described.llvm_func_name, environment),
+            tuple(sorted(roles)),
+            tuple(sorted(tables)),
+        )
+
+    def _load(self, key: str) -> Any:
+        return self._file().load(self._key(key))
+
+    def _save(self, key: str, data: Any) -> None:
+        self._file().save(self._key(key), data)
+
+    def _file(self) -> Any:
+        if self._disk is None:
+            self._disk = kept(self.function)
+        return self._disk
+
+    def _key(self, key: str) -> tuple[Any, ...]:
+        return (key, cpu_target.target_context.codegen().magic_tuple())
+
+
+def linked(
+    arguments: tuple[types.Type, ...],
+    layouts: Iterable[Layout],
+    slots: Any = (),
+    roles: Mapping[str, Role] | None = None,
+    idle: Iterable[Any] = (),
+) -> Callable[[Callable[..., Any]], Linked]:
+    """Return a decorator that makes a `Linked` kernel of a function.
+
+    The function takes `arguments`, and after them what has its slots filled: a named tuple of
+    `slot` for each of `roles`, in which `Linked.of` puts custom functions; `idle` are functions that
+    are none.
+    """
+    return lambda function: Linked(function, arguments, layouts, slots, roles or {}, idle)
+
+
+def _define(module: binding.ModuleRef, symbol: str, value: str) -> None:
+    """Link a constant into a module."""
+    constant = binding.parse_assembly(f"@{symbol} = constant {value}")
+    constant.triple, constant.data_layout = module.triple, module.data_layout
+    module.link_in(constant)
+    module.get_global_variable(symbol).linkage = "internal"
+
+
+_FILLINGS: WeakKeyDictionary[Any, bytes] = WeakKeyDictionary()
+
+
+def _filling(name: str, role: Role, function: Any) -> binding.ModuleRef:
+    """Return a module that fills the slot of a role: a function, its result cast to the role's."""
+    if function not in _FILLINGS:
+        fill = _with_arguments("{}", "function({})", len(role.arguments), function=function)
+        dispatcher = inlined(fill, **OPTIONS)
+        dispatcher.compile(typing.signature(role.result, *role.arguments))
+        (overload,) = dispatcher.overloads.values()
+        module = overload.library._get_module_for_linking().clone()
+        filling = module.get_function(overload.fndesc.llvm_func_name)
+        filling.name = SLOT + name
+        filling.linkage = "external"
+        _FILLINGS[function] = module.as_bitcode()
+    return binding.parse_bitcode(_FILLINGS[function])
+
+
+def _callable(library: Any, names: Names, function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return what calls a kernel from Python."""
+    environment = Environment(function.__globals__)
+    made = _dynfunc.make_function(
+        inspect.getmodule(function),
+        function.__name__,
+        function.__doc__,
+        library.get_pointer_to_function(names.wrapper),
+        environment,
+        (library,),
+    )
+    library.codegen.set_env(names.environment, environment)
+    return made
