@@ -98,21 +98,23 @@ def _arguments(line: str) -> int:
     return call[1].count(",") + 1 if call and call[1] else 0
 
 
-def counted(code: str, symbols: Any, environment: object, function: Callable[..., Any]) -> Counted:
-    """Return a counting copy of a kernel, of which this is LLVM's code.
+def counted(library: Any, symbols: Any, function: Callable[..., Any]) -> Counted:
+    """Return a counting copy of a kernel: of the library that a function was compiled to.
 
-    `symbols` are those of Python's wrapper and of the environment; `function` was compiled to it.
+    `symbols` are those of Python's wrapper and of the environment.
     """
     from llvmlite import binding
     from numba import _dynfunc  # pyright: ignore[reportAttributeAccessIssue]
+    from numba.core.environment import Environment
 
-    module = binding.parse_assembly(counting(code))
+    module = binding.parse_assembly(counting(str(library._get_module_for_linking())))
     module.verify()
     machine = binding.Target.from_default_triple().create_target_machine(opt=1, jit=True)
     engine = binding.create_mcjit_compiler(module, machine)
     engine.finalize_object()
     counter = ctypes.c_int64.from_address(engine.get_global_value_address(COUNTER))
     place = ctypes.c_void_p.from_address(engine.get_global_value_address(symbols.environment))
+    environment = Environment(function.__globals__)
     place.value = id(environment)
     address = engine.get_function_address(symbols.wrapper)
     alive = (engine, environment)
@@ -140,8 +142,6 @@ def counts() -> dict[str, int]:
 
     Each is lived by the kernel itself too, and has to come to the same end.
     """
-    from numba.core.environment import Environment
-
     import animat
     from animat.life.kernels import live_slice
     from animat.life.scenario import bring_together
@@ -155,10 +155,8 @@ def counts() -> dict[str, int]:
         mind = animat.Mind(agent=agent, death=False)
         setting = bring_together(mind, world, animat.Khepera(infrared=infrared))
         end = lived(live_slice.of(setting.counts, setting.functions), setting)
-        ((library, symbols),) = live_slice.libraries
-        code = str(library._get_module_for_linking())
-        environment = Environment(live_slice.function.__globals__)
-        call, count = counted(code, symbols, environment, live_slice.function)
+        library, symbols = live_slice.libraries[0]
+        call, count = counted(library, symbols, live_slice.function)
         assert lived(call, setting) == end
         found[f"{world.name}, {agent}, {infrared}"] = count()
     return found

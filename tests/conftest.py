@@ -11,6 +11,8 @@ import fcntl
 import math
 import os
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -85,19 +87,30 @@ def compile_once() -> None:
     from numba.core.compiler_lock import global_compiler_lock
     from numba.core.dispatcher import Dispatcher
 
-    alone = Dispatcher.compile
+    from animat.numerics.linked import Linked
+
+    @contextmanager
+    def one_at_a_time(file: Any) -> Iterator[None]:
+        # The lock among threads comes first, so that none holds this one and waits for that.
+        with global_compiler_lock, Path(f"{file._index_path}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            yield
+
+    alone, linked_alone = Dispatcher.compile, Linked._kernel
 
     def compile_or_wait(self: Any, signature: Any) -> Any:
         if not isinstance(self._cache, FunctionCache):
             return alone(self, signature)
         self._cache._impl.locator.ensure_cache_path()
-        name = f"{self._cache._impl.filename_base}.lock"
-        # The lock among threads comes first, so that none holds this one and waits for that.
-        with global_compiler_lock, (Path(self._cache.cache_path) / name).open("w") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
+        with one_at_a_time(self._cache._cache_file):
             return alone(self, signature)
 
+    def link_or_wait(self: Any, counts: Any, functions: Any) -> Any:
+        with one_at_a_time(self._file()):
+            return linked_alone(self, counts, functions)
+
     Dispatcher.compile = compile_or_wait
+    Linked._kernel = link_or_wait
 
 
 if os.environ.get("PYTEST_XDIST_WORKER"):

@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numba
@@ -70,6 +71,15 @@ def compiled(function):
     return dispatcher
 
 
+def copied(instructions, dispatcher):
+    (overload,) = dispatcher.overloads.values()
+    described = overload.fndesc
+    symbols = SimpleNamespace(
+        wrapper=described.llvm_cpython_wrapper_name, environment=described.env_name
+    )
+    return instructions.counted(overload.library, symbols, dispatcher.py_func)
+
+
 def cost(copy, *arguments):
     before = copy.count()
     copy.call(*arguments)
@@ -79,17 +89,17 @@ def cost(copy, *arguments):
 @pytest.mark.parametrize("function", [rounds, more_rounds, chosen])
 def test_what_counts_computes_the_same(function, instructions):
     dispatcher = compiled(function)
-    copy = instructions.counted(dispatcher)
+    copy = copied(instructions, dispatcher)
     for n in (0, 1, 2, 3, 4, 57):
         assert copy.call(n, 0.5) == dispatcher(n, 0.5)
 
 
 def test_a_loop_costs_as_much_each_time_round(instructions):
-    copy = instructions.counted(compiled(rounds))
+    copy = copied(instructions, compiled(rounds))
     first, second, third = (cost(copy, n, 0.5) for n in (1_000, 2_000, 3_000))
     assert third - second == second - first > 5 * 1_000
     assert cost(copy, 2_000, 0.5) == second
-    more = instructions.counted(compiled(more_rounds))
+    more = copied(instructions, compiled(more_rounds))
     assert cost(more, 2_000, 0.5) - cost(more, 1_000, 0.5) >= second - first + 2 * 1_000
 
 
@@ -135,7 +145,7 @@ def test_every_block_is_counted_and_a_call_by_its_arguments(instructions):
 
 
 def test_only_what_is_executed_counts(instructions):
-    copy = instructions.counted(compiled(chosen))
+    copy = copied(instructions, compiled(chosen))
     assert 0 < cost(copy, 4, 0.5) < 15
 
 

@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 
 from animat.errors import Error, SettingsError
 from animat.life.birth import born
-from animat.life.scenario import LifeError, checked_parameters
+from animat.life.scenario import LifeError, checked_parameters, counts_of
 from animat.life.summary import summary
-from animat.life.trace import row_dtype, table
+from animat.life.trace import ROW, table
 from animat.mind.mind import Mind
 from animat.names import KEPT, LIKELIHOOD, LIVES, MARKS, MODES, OF_A_STUDY, TRACE, spelled
+from animat.robot.khepera import SENSORS
 from animat.study.file.cases import cases
 from animat.study.file.design import Design
 from animat.study.file.settings import CaseSettings, WorldChoice
@@ -47,9 +48,10 @@ def world_of(types) -> World:
 
 def columns(mind: Mind, world: World) -> tuple[list[str], list[str]]:
     """Return the columns of a trace, and of a table of lives."""
-    states = born(mind, checked_parameters(mind, world), len(world.feature_names), 0, None)
+    counts = counts_of(mind, len(world.feature_names), SENSORS)
+    states = born(counts, checked_parameters(mind, world), 0, None)
     setting: Any = SimpleNamespace(mind=mind, world=world)
-    rows = np.zeros(0, row_dtype(states.dtype))
+    rows = np.zeros(0, ROW.dtype(counts._asdict()))
     lives = summary(setting, 0, np.zeros(0, np.uint64), states)
     return table(rows, mind, world).column_names, list(lives)
 

@@ -25,7 +25,11 @@ def live_slice(*_):
     print("stuck", flush=True)
     forever(np.zeros(1))
 
-animat.life.batch.live_slice = live_slice
+class Stuck:
+    def of(self, *_):
+        return live_slice
+
+animat.life.batch.live_slice = Stuck()
 main()
 """
 

@@ -28,6 +28,7 @@ from animat.life.life import live
 from animat.life.likelihoods import likelihoods
 from animat.life.scenario import bring_together
 from animat.mind.mind import Mind
+from animat.numerics.linked import Linked
 from animat.world.world import World
 
 SCRIPT = Path(__file__)
@@ -91,17 +92,20 @@ def kernels() -> dict[str, Any]:
     for module in pkgutil.walk_packages(animat.__path__, "animat."):
         if not module.name.endswith("__main__"):
             for value in vars(importlib.import_module(module.name)).values():
-                if isinstance(value, Dispatcher) and isinstance(value._cache, FunctionCache):
+                if isinstance(value, Linked):
+                    found[value.name] = value
+                elif isinstance(value, Dispatcher) and isinstance(value._cache, FunctionCache):
                     found[f"{value.py_func.__module__}.{value.__name__}"] = value
     return found
 
 
 def intermediate_codes(kernel: Any) -> list[str]:
-    """Return LLVM's optimised code of every signature a kernel has been compiled for or read for
-    from the cache in this process.
-    """
-    modules = [one.library._get_module_for_linking() for one in kernel.overloads.values()]
-    return [str(module) for module in modules]
+    """Return LLVM's optimised code of all that a kernel has been compiled to in this process."""
+    if isinstance(kernel, Linked):
+        libraries = [library for library, _ in kernel.libraries]
+    else:
+        libraries = [one.library for one in kernel.overloads.values()]
+    return [str(library._get_module_for_linking()) for library in libraries]
 
 
 def functions(code: str) -> Iterator[tuple[str, str]]:

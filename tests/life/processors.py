@@ -111,10 +111,9 @@ def code() -> dict[str, Any]:
 
     fused = numba.njit(**{**OPTIONS, "fastmath": True})(product_and_sum)
     fused(1.0)
-    kernel: Any = live_slice
-    ((signature, overload),) = kernel.overloads.items()
-    _, processor, features = overload.library.codegen.magic_tuple()
-    assembly = kernel.inspect_asm(signature)
+    library, _ = live_slice.libraries[0]
+    _, processor, features = library.codegen.magic_tuple()
+    assembly = library.get_asm_str()
     return {
         "processor": processor,
         "features": features,

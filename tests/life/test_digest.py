@@ -8,10 +8,10 @@ import pytest
 from animat.life.batch import advance
 from animat.life.digest import SCRATCH, digest
 from animat.life.scenario import bring_together
-from animat.life.state import state_dtype
+from animat.life.state import STATE, Counts
 from animat.mind.mind import Mind
 
-DTYPE = state_dtype(3, 3, 3, 2, 2, 9)
+DTYPE = STATE.dtype(Counts(V=3, D=3, B=3, N=8, F=2, H=2, W=9)._asdict())
 
 
 @pytest.fixture

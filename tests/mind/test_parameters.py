@@ -5,7 +5,7 @@ import pytest
 
 from animat.mind.agents import ASK_NETWORKS
 from animat.mind.mind import Learning, Mind
-from animat.mind.parameters import SHARED, mind_dtype, parameters
+from animat.mind.parameters import MIND, SHARED, parameters
 from animat.numerics.elementary import exponential
 
 AFFORDANCES = ("grasp", "shelter", "interact")
@@ -211,7 +211,7 @@ def test_minds_of_any_size_fill_their_matrices():
         failure_effect=0.1,
     )  # fmt: skip
     record = parameters(mind, ("drink", "interact", "shelter", "grasp"))
-    assert record.dtype == mind_dtype(5, 4, 5)
+    assert record.dtype == MIND.dtype({"V": 5, "D": 4, "B": 5})
     assert record.sense.tolist() == [1, -1, -1, 1, -1]
     assert record.law.tolist() == [0, 2, 2, 3, 1]
     assert (record.low[3], record.high[3], record.start[3]) == (-1.0, 4.0, 2.0)

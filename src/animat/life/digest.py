@@ -7,9 +7,12 @@ import hashlib
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.numerics.layout import PADDING
+
 SCRATCH = (
     *("readings", "hidden", "aftermath", "drives_after", "changes_after"),
     *("asked", "failure", "given"),
+    PADDING,
 )
 """The fields of a state that hold nothing that a later step reads; no digest takes them in."""
 

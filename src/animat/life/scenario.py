@@ -101,19 +101,23 @@ def bring_together(
         hidden = mind.learning.hidden_units
         around = Surroundings(raster.features, hidden, body.sensor_cosine, body.sensor_y)
         try_functions(functions, mind_parameters, around)
-    features, hidden = raster.features.shape[1], mind.learning.hidden_units
-    counts = Counts(
-        len(mind_parameters.law),
-        len(mind.drives),
-        len(mind.behaviours),
-        len(robot.sensors),
-        features,
-        hidden,
-        mind.weight_count(features),
-    )
+    counts = counts_of(mind, raster.features.shape[1], len(robot.sensors))
     records = [raw(np.array([one], one.dtype)) for one in (mind_parameters, body)]
     constants = records[0], records[1], raster
     return Setting(mind, robot, world, mind_parameters, body, raster, functions, counts, constants)
+
+
+def counts_of(mind: Mind, features: int, sensors: int) -> Counts:
+    """Return what the records of lives are shaped by, of a mind that sees so many features."""
+    return Counts(
+        V=len(mind.resolved_variables()),
+        D=len(mind.drives),
+        B=len(mind.behaviours),
+        N=sensors,
+        F=features,
+        H=mind.learning.hidden_units,
+        W=mind.weight_count(features),
+    )
 
 
 def checked_parameters(mind: Mind, world: World) -> np.record:

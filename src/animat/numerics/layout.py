@@ -22,6 +22,9 @@ from numba.np import numpy_support
 from numba.np.arrayobj import make_array, populate_array
 from numpy.typing import NDArray
 
+PADDING = "padding"
+"""The field of the bytes that no other field has, always 0: NumPy would leave them as they are."""
+
 WORD = 8
 """Bytes of every element of a field that is an array, and what records are aligned to."""
 
@@ -43,16 +46,20 @@ class Layout:
     """A kind of record: its fields, and the counts that their shapes are made of."""
 
     def __init__(self, name: str, fields: tuple[Field, ...]) -> None:
-        """Lay out fields; those of one element first."""
+        """Lay out fields: those of one element first, the large before the small."""
         self.name = name
         self.symbol = f"animat_layout_{name}"
-        self.single = tuple(one for one in fields if not one.shape)
+        single = (one for one in fields if not one.shape)
+        self.single = tuple(sorted(single, key=lambda one: -np.dtype(one.kind).itemsize))
         self.arrays = tuple(one for one in fields if one.shape)
         lengths = {length for one in self.arrays for length in one.shape}
         self.counts = tuple(sorted(each for each in lengths if isinstance(each, str)))
         head = np.dtype([(one.name, one.kind) for one in self.single], align=True)
         self.offsets = {name: int(place[1]) for name, place in (head.fields or {}).items()}
-        self.start = -(-head.itemsize // WORD) * WORD
+        used = max(
+            (self.offsets[one.name] + np.dtype(one.kind).itemsize for one in self.single), default=0
+        )
+        self.padding = -used % WORD
         self.elements = {
             one.name: numpy_support.from_dtype(np.dtype(one.kind))
             for one in (*self.single, *self.arrays)
@@ -64,6 +71,8 @@ class Layout:
     def dtype(self, counts: Mapping[str, int]) -> np.dtype:
         """Return NumPy's type of a record with these counts."""
         fields: list[Any] = [(one.name, one.kind) for one in self.single]
+        if self.padding:
+            fields.append((PADDING, np.uint8, (self.padding,)))
         for one in self.arrays:
             shape = tuple(counts[n] if isinstance(n, str) else n for n in one.shape)
             fields.append((one.name, one.kind, shape))

@@ -173,18 +173,18 @@ class Linked:
             names, code = known
             library = codegen.unserialize_library(code)
         else:
-            prefix = f"animat_{hashlib.sha256(key.encode()).hexdigest()[:16]}_{len(self._made)}_"
-            library, names = self._library(template, counts, functions, prefix)
+            suffix = f".{hashlib.sha256(key.encode()).hexdigest()[:16]}.{len(self._made)}"
+            library, names = self._library(template, counts, functions, suffix)
             if lasts:
                 self._save(key, (names, library.serialize_using_object_code()))
         self.libraries.append((library, names))
         return _callable(library, names, self.function)
 
     def _library(
-        self, template: _Template, counts: Mapping[str, int], functions: Any, prefix: str
+        self, template: _Template, counts: Mapping[str, int], functions: Any, suffix: str
     ) -> tuple[Any, Names]:
         """Return the machine code of a kernel, and the names of its symbols."""
-        module, names = self._linked(template, counts, functions, prefix)
+        module, names = self._linked(template, counts, functions, suffix)
         library = cpu_target.target_context.codegen().create_library(names.function)
         library.enable_object_caching()
         library._final_module.link_in(module)
@@ -192,7 +192,7 @@ class Linked:
         return library, names
 
     def _linked(
-        self, template: _Template, counts: Mapping[str, int], functions: Any, prefix: str
+        self, template: _Template, counts: Mapping[str, int], functions: Any, suffix: str
     ) -> tuple[binding.ModuleRef, Names]:
         """Return the template with all linked in, under names of its own, and these names."""
         module = binding.parse_bitcode(template.code)
@@ -207,7 +207,7 @@ class Linked:
         for role in template.roles:
             module.get_function(SLOT + role).linkage = "internal"
         # In one process there are many of a kernel, which must not take one for the other.
-        names = Names(*(prefix + name for name in template.names))
+        names = Names(*(name + suffix for name in template.names))
         module.get_function(template.names.wrapper).name = names.wrapper
         module.get_function(template.names.function).name = names.function
         module.get_global_variable(template.names.environment).name = names.environment
@@ -271,9 +271,8 @@ def linked(
 ) -> Callable[[Callable[..., Any]], Linked]:
     """Return a decorator that makes a `Linked` kernel of a function.
 
-    The function takes `arguments`, and after them what has its slots filled: a named tuple of
-    `slot` for each of `roles`, in which `Linked.of` puts custom functions; `idle` are functions that
-    are none.
+    The function takes `arguments`, and after them `slots`: a named tuple of a `slot` for each of
+    `roles`, into which `Linked.of` puts functions. Those of `idle` stand for no custom one.
     """
     return lambda function: Linked(function, arguments, layouts, slots, roles or {}, idle)
 
@@ -310,7 +309,7 @@ def _callable(library: Any, names: Names, function: Callable[..., Any]) -> Calla
     made = _dynfunc.make_function(
         inspect.getmodule(function),
         function.__name__,
-        function.__doc__,
+        function.__doc__ or "",
         library.get_pointer_to_function(names.wrapper),
         environment,
         (library,),

@@ -306,8 +306,10 @@ def free_way(
         ray_u, ray_v = u + way * ahead_u, v + way * ahead_v
         if occupied(ray_u, ray_v, raster.solid, present):
             return way
-        to_border = min(_to_border(ray_u, ahead_u), _to_border(ray_v, ahead_v))
-        way += max(to_border, room(ray_u, ray_v, raster))
+        leap = room(ray_u, ray_v, raster)
+        if leap < 2.0 * raster.resolution:  # else it leaves its cell for certain
+            leap = max(min(_to_border(ray_u, ahead_u), _to_border(ray_v, ahead_v)), leap)
+        way += leap
     return LINEAR_REACH
 
 
