@@ -1,4 +1,4 @@
-"""Measure everything: steps, threads, starting up, the parts of a step, and functions of one's own.
+"""Measure everything: steps, threads, starting up, calls, the parts of a step, and functions of one's own.
 
     python bench/all.py [--markdown] [--json FILE]
 
@@ -18,7 +18,7 @@ from pathlib import Path
 
 import figures
 
-PROGRAMS = ("speed", "threads", "startup", "parts", "functions")
+PROGRAMS = ("speed", "threads", "startup", "calls", "parts", "functions")
 
 
 def main() -> None:

@@ -216,7 +216,6 @@ def with_role(role: str, function: str) -> Mind:
     }[role]()
 
 
-def test_a_failed_life_is_no_part_of_what_a_row_or_a_digest_holds(small):
-    states, _ = bring_together(Mind(), small).begin(1, np.zeros(1, np.uint64))
+def test_a_failed_life_is_no_part_of_what_a_row_or_a_digest_holds():
     row = {field.name for field in (*ROW.single, *ROW.arrays)}
     assert not {"asked", "failure", "given"} & row

@@ -125,8 +125,8 @@ with event.install_listener("numba:compile", Compilations()):
     print(json.dumps({"result": run(float(sys.argv[2]), own), "compiled": names}))
 """
 
-# Runs a function by itself, then a kernel, then another; says how often it was told by then that one
-# is compiled, and what is written to the error output. A negative number asks for silence.
+# Runs a function by itself, then a kernel, then another; says how often it was told by then that
+# one is compiled, and what is written to the error output. A negative number asks for silence.
 TELLING = """
 import contextlib, io, json, logging, sys
 import mine
@@ -288,9 +288,7 @@ def test_every_layer_that_compiles_is_stamped():
     compiling = {
         path.relative_to(root).parts[0]
         for path in root.rglob("*.py")
-        if re.search(
-            r"^@(compiled|kernel|linked\()", path.read_text(encoding="utf-8"), re.MULTILINE
-        )
+        if re.search(r"^@(compiled|kernel|linked\()", path.read_text("utf-8"), re.MULTILINE)
     }
     assert compiling == set(COMPILING_LAYERS)
 

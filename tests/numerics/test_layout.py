@@ -34,7 +34,7 @@ class Counts(NamedTuple):
 
 @compiled
 def change(record: Any, n: Any) -> Any:
-    """Change every element of every field by where it is, and return how many elements arrays had."""
+    """Change every element of every field by where it is; return how many arrays have."""
     record.flag = not record.flag
     record.speed += n + 0.5
     record.whole -= n

@@ -56,10 +56,7 @@ class Layout:
         self.counts = tuple(sorted(each for each in lengths if isinstance(each, str)))
         head = np.dtype([(one.name, one.kind) for one in self.single], align=True)
         self.offsets = {name: int(place[1]) for name, place in (head.fields or {}).items()}
-        used = max(
-            (self.offsets[one.name] + np.dtype(one.kind).itemsize for one in self.single), default=0
-        )
-        self.padding = -used % WORD
+        self.padding = -sum(np.dtype(one.kind).itemsize for one in self.single) % WORD
         self.elements = {
             one.name: numpy_support.from_dtype(np.dtype(one.kind))
             for one in (*self.single, *self.arrays)
@@ -81,9 +78,14 @@ class Layout:
     def table(self, counts: Mapping[str, int]) -> list[int]:
         """Return what a kernel reads: the size of a record, the counts, where each array begins."""
         dtype = self.dtype(counts)
-        places: Mapping[str, Any] = dtype.fields or {}
+        places: Any = dtype.fields
         begins = [int(places[one.name][1]) for one in self.arrays]
         return [dtype.itemsize, *(counts[name] for name in self.counts), *begins]
+
+
+def _numba_type(kind: type[np.generic]) -> types.Type:
+    dtype: Any = np.dtype(kind)
+    return numpy_support.from_dtype(dtype)
 
 
 class RecordType(types.Type):
@@ -191,7 +193,8 @@ def _reader(layout: Layout) -> Callable[[Any, Any], Any]:
     def at(records: Any, n: Any) -> Any:
         return records[n]
 
-    return at if getattr(config, "DISABLE_JIT", False) else record_at
+    compiled_at: Any = record_at
+    return at if getattr(config, "DISABLE_JIT", False) else compiled_at
 
 
 BYTES = types.Array(types.uint8, 1, "C")

@@ -18,13 +18,13 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
-import numba
 from llvmlite import binding, ir
 from numba import _dynfunc, types  # pyright: ignore[reportAttributeAccessIssue]
-from numba.core import cgutils, config, typing
+from numba.core import cgutils, config
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.environment import Environment
-from numba.core.registry import cpu_target
+from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.typing.templates import signature
 from numba.extending import intrinsic
 
 from animat.numerics.compiled import OPTIONS, announce, compiled, kept
@@ -65,7 +65,7 @@ class _Template(NamedTuple):
 def slot(name: str, role: Role) -> Any:
     """Return a compiled function that calls what will be linked into the slot of a role."""
 
-    def lower(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def lower(context: Any, builder: Any, _: Any, given: Any) -> Any:
         kind = context.call_conv.get_function_type(role.result, role.arguments)
         known = builder.module.globals.get(SLOT + name)
         function = known or ir.Function(builder.module, kind, name=SLOT + name)
@@ -76,11 +76,9 @@ def slot(name: str, role: Role) -> Any:
             context.call_conv.return_status_propagate(builder, status)
         return result
 
-    signature = typing.signature(role.result, *role.arguments)
-    call = _with_arguments(
-        "typing_context, {}", "found", len(role.arguments), found=(signature, lower)
-    )
-    return compiled(_with_arguments("{}", "call({})", len(role.arguments), call=intrinsic(call)))
+    count, found = len(role.arguments), (signature(role.result, *role.arguments), lower)
+    call = intrinsic(_with_arguments("typing_context, {}", "found", count, found=found))
+    return compiled(_with_arguments("{}", "call({})", count, call=call))
 
 
 def _with_arguments(given: str, result: str, count: int, **around: Any) -> Callable[..., Any]:
@@ -91,30 +89,30 @@ def _with_arguments(given: str, result: str, count: int, **around: Any) -> Calla
     return around["made"]
 
 
+def _target() -> Any:
+    return cpu_target.target_context
+
+
 @intrinsic
 def _any_custom(typing_context):
-    def lower(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def lower(context: Any, builder: Any, _: Any, given: Any) -> Any:
         known = builder.module.globals.get(CUSTOM)
         if known is None:
-            known = ir.GlobalVariable(builder.module, ir.IntType(8), CUSTOM)
-            known.linkage, known.global_constant = "weak", True
-            known.initializer = ir.IntType(8)(1)
+            byte = ir.IntType(8)
+            known = ir.GlobalVariable(builder.module, byte, CUSTOM)
+            vars(known).update(linkage="weak", global_constant=True, initializer=byte(1))
         return builder.trunc(builder.load(known), ir.IntType(1))
 
-    return typing.signature(types.boolean), lower
+    return signature(types.boolean), lower
+
+
+_ANY_CUSTOM: Any = (lambda: True) if getattr(config, "DISABLE_JIT", False) else _any_custom
 
 
 @compiled
 def any_custom():
-    """Tell whether a slot holds a custom function; a constant where kernels are linked."""
-    return _any_custom()
-
-
-if getattr(config, "DISABLE_JIT", False):
-
-    def any_custom():
-        """Tell that a slot may hold a custom function."""
-        return True
+    """Tell whether a slot may hold a custom function; a constant where kernels are linked."""
+    return _ANY_CUSTOM()
 
 
 class Linked:
@@ -167,7 +165,7 @@ class Linked:
         shape = [self._layouts[symbol].table(counts) for symbol in template.layouts]
         key = repr((self.name, own, shape))
         lasts = None not in own
-        codegen = cpu_target.target_context.codegen()
+        codegen = _target().codegen()
         known = self._load(key) if lasts else None
         if known is not None:
             names, code = known
@@ -185,7 +183,7 @@ class Linked:
     ) -> tuple[Any, Names]:
         """Return the machine code of a kernel, and the names of its symbols."""
         module, names = self._linked(template, counts, functions, suffix)
-        library = cpu_target.target_context.codegen().create_library(names.function)
+        library = _target().codegen().create_library(names.function)
         library.enable_object_caching()
         library._final_module.link_in(module)
         library.finalize()
@@ -224,20 +222,17 @@ class Linked:
         return self._template
 
     def _compile(self) -> _Template:
-        count, around = (
-            len(self._arguments),
-            {"body": compiled(self.function), "slots": self._slots},
-        )
-        kernel = _with_arguments("{}", "body({}, slots)", count, **around)
-        dispatcher: Any = numba.njit(
-            pipeline_class=InlinedCompiler, no_cfunc_wrapper=True, **OPTIONS
-        )(kernel)
+        around = {"body": compiled(self.function), "slots": self._slots}
+        kernel = _with_arguments("{}", "body({}, slots)", len(self._arguments), **around)
+        # Inlined as far as LLVM's code, but with what Python calls it by.
+        options: dict[str, Any] = {"no_cfunc_wrapper": True, **OPTIONS}
+        dispatcher: Any = CPUDispatcher(kernel, {}, {"nopython": True, **options}, InlinedCompiler)
         dispatcher.compile(self._arguments)
         (overload,) = dispatcher.overloads.values()
         described = overload.fndesc
         overload.library._ensure_finalized()
         module = overload.library._final_module
-        environment = cpu_target.target_context.get_env_name(described)
+        environment = _target().get_env_name(described)
         roles = [f.name.removeprefix(SLOT) for f in module.functions if f.name.startswith(SLOT)]
         tables = [g.name for g in module.global_variables if g.name in self._layouts]
         return _Template(
@@ -259,7 +254,7 @@ class Linked:
         return self._disk
 
     def _key(self, key: str) -> tuple[Any, ...]:
-        return (key, cpu_target.target_context.codegen().magic_tuple())
+        return (key, _target().codegen().magic_tuple())
 
 
 def linked(
@@ -293,7 +288,7 @@ def _filling(name: str, role: Role, function: Any) -> binding.ModuleRef:
     if function not in _FILLINGS:
         fill = _with_arguments("{}", "function({})", len(role.arguments), function=function)
         dispatcher = inlined(fill, **OPTIONS)
-        dispatcher.compile(typing.signature(role.result, *role.arguments))
+        dispatcher.compile(signature(role.result, *role.arguments))
         (overload,) = dispatcher.overloads.values()
         module = overload.library._get_module_for_linking().clone()
         filling = module.get_function(overload.fndesc.llvm_func_name)
