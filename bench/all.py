@@ -1,4 +1,4 @@
-"""Measure everything: steps, threads, starting up, calls, the parts of a step, and functions of one's own.
+"""Measure everything: steps, threads, starting up, calls, parts of a step, and custom functions.
 
     python bench/all.py [--markdown] [--json FILE]
 

@@ -57,10 +57,7 @@ class Layout:
         head = np.dtype([(one.name, one.kind) for one in self.single], align=True)
         self.offsets = {name: int(place[1]) for name, place in (head.fields or {}).items()}
         self.padding = -sum(np.dtype(one.kind).itemsize for one in self.single) % WORD
-        self.elements = {
-            one.name: numpy_support.from_dtype(np.dtype(one.kind))
-            for one in (*self.single, *self.arrays)
-        }
+        self.elements = {one.name: _numba_type(one.kind) for one in fields}
         self.number = {one.name: n for n, one in enumerate(self.arrays)}
         self.type = RecordType(self)
         self.at = _reader(self)
