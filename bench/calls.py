@@ -16,8 +16,8 @@ import numpy as np
 
 import animat
 import figures
+from animat.life import kernels
 from animat.life.batch import advance
-from animat.life.kernels import live_slice
 from animat.life.scenario import bring_together
 from animat.numerics.layout import raw
 from figures import Table, Target
@@ -31,7 +31,7 @@ def of_kernels(repeat: int, tiny: bool) -> Table:
     setting = bring_together(animat.Mind(death=False), animat.World.abundant())
     lives = np.zeros(1, np.uint64)
     states, present = setting.begin(1, lives)
-    kernel = live_slice.of(setting.counts, setting.functions)
+    kernel = kernels.advance.of(setting.counts, setting.functions)
     given = raw(states), present, lives, *setting.constants, 1, 0
     calls: dict[str, Callable[[], None]] = {
         "the kernel": lambda: kernel(*given),

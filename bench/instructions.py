@@ -143,7 +143,7 @@ def counts() -> dict[str, int]:
     Each is lived by the kernel itself too, and has to come to the same end.
     """
     import animat
-    from animat.life.kernels import live_slice
+    from animat.life.kernels import advance
     from animat.life.scenario import bring_together
 
     found = {}
@@ -154,9 +154,9 @@ def counts() -> dict[str, int]:
     ):
         mind = animat.Mind(agent=agent, death=False)
         setting = bring_together(mind, world, animat.Khepera(infrared=infrared))
-        end = lived(live_slice.of(setting.counts, setting.functions), setting)
-        library, symbols = live_slice.libraries[0]
-        call, count = counted(library, symbols, live_slice.function)
+        end = lived(advance.of(setting.counts, setting.functions), setting)
+        library, symbols = advance.libraries[0]
+        call, count = counted(library, symbols, advance.function)
         assert lived(call, setting) == end
         found[f"{world.name}, {agent}, {infrared}"] = count()
     return found

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animat.errors import Error
+from animat.life import kernels
 from animat.life.failure import carried_not_finite, failure_of, not_finite, raised, unknown
-from animat.life.kernels import live_slice
 from animat.life.likelihoods import likelihoods
 from animat.life.scenario import LifeError, Setting
 from animat.numerics.layout import raw
@@ -188,7 +188,7 @@ def advance(
     until: int,
 ) -> None:
     """Advance L lives, in place, until each has `until` steps or is dead."""
-    call = live_slice.of(setting.counts, setting.functions)
+    call = kernels.advance.of(setting.counts, setting.functions)
     call(raw(states), present, lives, *setting.constants, seed, until)
 
 

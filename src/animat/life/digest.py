@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from animat.numerics.layout import PADDING
 
 SCRATCH = (
-    *("readings", "hidden", "aftermath", "drives_after", "changes_after"),
-    *("asked", "failure", "given"),
+    *("readings", "hidden", "values_after", "drives_after", "changes_after"),
+    *("asked", "failure", "given", "met"),
     PADDING,
 )
 """The fields of a state that hold nothing that a later step reads; no digest takes them in."""

@@ -22,40 +22,67 @@ from animat.numerics.streams import FEATURES, SELECTION, uniforms
 
 
 @compiled
-def look_around(state, mind, robot, raster, present, functions, seed, life):
-    """Meet an object if one is near and a drive asks for something."""
-    site = met_site(state, robot.radius + mind.encounter_range, raster, present)
+def meet(state, model, scene, key):
+    """Perceive and judge an object if one is near; tell whether a behaviour has to be chosen."""
+    mind, raster = model.mind, scene.raster
+    site = met_site(state, model.robot.radius + mind.encounter_range, scene)
     if site == NO_SITE:
-        return
+        return False
     if mind.gated and not state.drives[drives.strongest(state.drives)] > 0.0:
-        return
-    perceive(state, mind, raster.features[raster.site_type[site]], seed, life)
-    judge(state, mind, raster.affords[raster.site_type[site]], functions)
-    luck, _, _, _ = uniforms(seed, life, SELECTION, state.step)
+        return False
+    state.met = site
+    perceive(state, mind, raster.features[raster.site_type[site]], key)
+    judge(state, mind, raster.affords[raster.site_type[site]], model.functions)
+    return True
+
+
+@compiled
+def choose(state, model, key):
+    """Return the behaviour that the mind chooses for the object met, or -1 for none."""
+    u, _, _, _ = uniforms(key.seed, key.life, SELECTION, state.step)
     failure.asks(state, failure.SELECTOR)
-    chosen = selection.select(
-        mind.selector, state.drives, state.estimates, mind.serves, luck, functions.selector
+    mind = model.mind
+    return selection.select(
+        mind.selector, state.drives, state.estimates, mind.serves, u, model.functions.selector
     )
+
+
+@compiled
+def commit(state, mind, chosen):
+    """Take on the object met with the behaviour chosen, or disregard it if that seems in vain."""
     if chosen < 0 or chosen >= len(mind.serves):
         if chosen != -1:
             failure.fail(state, failure.SELECTOR, float(chosen), 0.0)
         return
-    state.event |= ENCOUNTERED
-    state.encounters += 1
-    state.site = site
+    encounter(state)
     state.behaviour = chosen
     state.likelihoods[chosen] = state.estimates[chosen]
     if mind.judge == ACCEPT_ALL or state.estimates[chosen] >= mind.likelihood_threshold:
         change_mode(state, APPROACH)
     else:
-        state.event |= DISREGARDED
-        state.disregarded += 1
-        abandon(state)
+        disregard(state)
 
 
 @compiled
-def met_site(state, reach, raster, present):
+def encounter(state):
+    """Begin to deal with the object met."""
+    state.event |= ENCOUNTERED
+    state.encounters += 1
+    state.site = state.met
+
+
+@compiled
+def disregard(state):
+    """Leave the object that was just encountered."""
+    state.event |= DISREGARDED
+    state.disregarded += 1
+    abandon(state)
+
+
+@compiled
+def met_site(state, reach, scene):
     """Return the nearest object within `reach` (mm) of the centre that was not abandoned, or -1."""
+    raster, present = scene.raster, scene.present
     row, column = row_and_column(state.x, state.y, raster)
     for k in range(raster.near_site.shape[2]):
         if not raster.near_distance[row, column, k] <= reach:
@@ -67,12 +94,13 @@ def met_site(state, reach, raster, present):
 
 
 @compiled
-def perceive(state, mind, features, seed, life):
+def perceive(state, mind, features, key):
     """Take in the features [F] of an object, with noise if there is any."""
     for f in range(len(state.features)):
         state.features[f] = features[f]
         if mind.feature_noise > 0.0:
-            noise, _, _, _ = uniforms(seed, life, FEATURES, state.step * len(state.features) + f)
+            number = state.step * len(state.features) + f
+            noise, _, _, _ = uniforms(key.seed, key.life, FEATURES, number)
             state.features[f] += mind.feature_noise * (2.0 * noise - 1.0)
 
 

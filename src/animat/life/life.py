@@ -17,7 +17,7 @@ from animat.files.validation_errors import brief
 from animat.life.batch import Progress, advance, failure
 from animat.life.digest import digest
 from animat.life.failure import FailedLifeError
-from animat.life.kernels import live_recorded
+from animat.life.kernels import advance_recorded
 from animat.life.scenario import LifeError, Setting, bring_together
 from animat.life.summary import death_of, summary
 from animat.life.trace import ROW, table
@@ -292,14 +292,14 @@ def live_unrecorded(moment: Moment, until: int) -> None:
 def live_rows(
     moment: Moment, until: int, rows: NDArray[np.void], every: int = 1, ring: bool = False
 ) -> int:
-    """Live the life on, in place, and fill `rows` [N]; see `live_recorded`. Return how many.
+    """Live the life on, in place, and fill `rows` [N]; see `advance_recorded`. Return how many.
 
     Raises FailedLifeError.
     """
     setting = moment.setting
     life = raw(moment.states), moment.present, np.array([moment.index], np.uint64)
     asked = moment.seed, until, raw(rows), len(rows), every, ring
-    call = live_recorded.of(setting.counts, setting.functions)
+    call = advance_recorded.of(setting.counts, setting.functions)
     return _unfailing(moment, until, lambda: call(*life, *setting.constants, *asked))
 
 

@@ -13,11 +13,12 @@ from animat.numerics.streams import OUTCOMES, PLACEMENT, uniforms
 
 
 @compiled
-def finish(state, mind, raster, present, functions, seed, life):
+def end_act(state, model, scene, key):
     """End an act: success or failure, what it does to the variables, and what is learnt of it."""
+    mind, raster, functions = model.mind, scene.raster, model.functions
     b = state.behaviour
     likelihood = raster.affords[raster.site_type[state.site], mind.needs[b]]
-    luck, _, _, _ = uniforms(seed, life, OUTCOMES, state.acts)
+    luck, _, _, _ = uniforms(key.seed, key.life, OUTCOMES, state.acts)
     succeeded = luck < likelihood
     state.acts += 1
     state.acts_by_behaviour[b] += 1
@@ -26,33 +27,33 @@ def finish(state, mind, raster, present, functions, seed, life):
         state.reward = 1
         state.successes += 1
         state.successes_by_behaviour[b] += 1
-        suffer(state, mind, mind.success[b], functions)
+        apply_effects(state, mind, mind.success[b], functions)
     else:
         state.event |= FAILED
         state.reward = -1
-        suffer(state, mind, mind.failure[b], functions)
+        apply_effects(state, mind, mind.failure[b], functions)
     cause = homeostasis.SUCCESS if succeeded else homeostasis.FAILURE
-    perish(state, mind, cause)
+    check_viability(state, mind, cause)
     left = state.site
     abandon(state)
     if succeeded and mind.consumed:
-        replace(left, state, raster, present, seed, life)
+        replace(left, state, scene, key)
 
 
 @compiled
-def suffer(state, mind, effects, functions):
+def apply_effects(state, mind, effects, functions):
     """Move the variables by `effects` [V]; learn if the acting drive varied suddenly.
 
     The variation is that of the drive before the variables are held back at their bounds, so that
     no failure goes unnoticed.
     """
     for v in range(len(state.values)):
-        state.aftermath[v] = state.values[v] + effects[v]
+        state.values_after[v] = state.values[v] + effects[v]
         state.changes_after[v] = state.changes[v] + effects[v]
     if mind.learns:
         failure.asks(state, failure.DRIVES)
         drives.raise_drives(
-            state.aftermath, state.changes_after, mind, state.drives_after, functions.drives
+            state.values_after, state.changes_after, mind, state.drives_after, functions.drives
         )
         custom = any_custom() and mind.error == drives.CUSTOM_DRIVES
         if custom and not drives.all_finite(state.drives_after):
@@ -61,7 +62,7 @@ def suffer(state, mind, effects, functions):
         variation = state.drives_after[acting] - state.drives[acting]
         if abs(variation) > mind.learning_threshold:
             train(state, mind, 1.0 if variation < 0.0 else 0.0, functions)
-    homeostasis.settle(state.values, state.aftermath, mind)
+    homeostasis.settle(state.values, state.values_after, mind)
 
 
 @compiled
@@ -88,7 +89,7 @@ def train(state, mind, target, functions):
 
 
 @compiled
-def perish(state, mind, cause):
+def check_viability(state, mind, cause):
     """End the life if a variable is outside its viability zone."""
     v = homeostasis.first_outside(state.values, mind)
     if v >= 0:
@@ -100,19 +101,20 @@ def perish(state, mind, cause):
 
 
 @compiled
-def replace(site, state, raster, present, seed, life):
+def replace(site, state, scene, key):
     """Put an object that was used up onto a spare site of its kind, out of sight, if one is free.
 
     With k sites free, each is taken with probability 1/k; where none is, the object stays.
     """
+    present = scene.present
     free = 0
     for s in range(len(present)):
-        if is_spare(s, site, state, raster, present):
+        if is_spare(s, site, state, scene):
             free += 1
-    luck, _, _, _ = uniforms(seed, life, PLACEMENT, state.acts)
+    luck, _, _, _ = uniforms(key.seed, key.life, PLACEMENT, state.acts)
     take = int(luck * free)
     for s in range(len(present)):
-        if is_spare(s, site, state, raster, present):
+        if is_spare(s, site, state, scene):
             if take == 0:
                 present[s] = 1
                 present[site] = 0
@@ -121,10 +123,11 @@ def replace(site, state, raster, present, seed, life):
 
 
 @compiled
-def is_spare(s, site, state, raster, present):
+def is_spare(s, site, state, scene):
     """Tell whether an object of `site` can be put onto site s, where nobody sees it."""
+    raster = scene.raster
     return (
-        not present[s]
+        not scene.present[s]
         and raster.site_type[s] == raster.site_type[site]
         and distance_to(s, state.x, state.y, raster) == OUT_OF_SIGHT
     )

@@ -62,6 +62,7 @@ STATE = Layout(
         Field("mode_steps", WHOLE),
         Field("behaviour", WHOLE),
         Field("site", WHOLE),
+        Field("met", WHOLE),  # the object met in this step, before a behaviour is chosen
         Field("abandoned", WHOLE, (ABANDONED,)),
         Field("memory", REAL, (4,)),  # of the wander controller
         # what it knows
@@ -90,7 +91,7 @@ STATE = Layout(
         Field("successes_by_behaviour", WHOLE, ("B",)),
         # room to work in; holds nothing from one step to the next
         Field("hidden", REAL, ("H",)),
-        Field("aftermath", REAL, ("V",)),
+        Field("values_after", REAL, ("V",)),
         Field("drives_after", REAL, ("D",)),
         Field("changes_after", REAL, ("V",)),
         # of custom functions: see animat.life.failure

@@ -1,9 +1,9 @@
 """One step of a life: sense, metabolise, decide, act.
 
 This is the hot path. `step` is the whole of it, top to bottom. Who wants to decide in the mind's
-place calls its four parts, and sets the motor commands (`left`, `right`) before `act`, or hands in
-a selector. Every function changes `state`, the record of `animat.life.state`, in place; `present`
-[S] tells which sites hold an object.
+place does so through `animat.life.control`. Every function changes `state`, the record of
+`animat.life.state`, in place, and reads `model` (mind, robot and functions), `scene` (what stands
+about) and `key` (what random numbers are addressed by).
 
     sense       read the infrared sensors; `step` leaves out what the search would not look at
     metabolise  the variables drift, the drives follow, a life may end
@@ -16,8 +16,19 @@ from __future__ import annotations
 import math
 
 from animat.life import failure
-from animat.life.encounter import abandon, change_mode, forget_lost, look_around
-from animat.life.outcome import finish, perish
+from animat.life.encounter import (
+    abandon,
+    change_mode,
+    choose,
+    commit,
+    encounter,
+    forget_lost,
+    judge,
+    meet,
+    met_site,
+    perceive,
+)
+from animat.life.outcome import check_viability, end_act
 from animat.life.sight import bearing, distance_to
 from animat.life.state import BLOCKED, NO_SITE, REACHED, UNREACHED
 from animat.mind import behaviours, drives, homeostasis
@@ -32,15 +43,15 @@ from animat.robot.motion import move
 
 
 @compiled
-def step(state, mind, robot, raster, present, functions, seed, life):
+def step(state, model, scene, key):
     """Live one step. A life that ends in it is `dead` afterwards."""
     begin(state)
     if state.mode == WANDER:
-        sense_what_is_looked_at(state, mind, robot, raster, present, seed, life)
-    metabolise(state, mind, functions)
+        sense_what_is_looked_at(state, model, scene, key)
+    metabolise(state, model)
     if not state.dead:
-        decide(state, mind, robot, raster, present, functions, seed, life)
-        act(state, mind, robot, raster, present, functions, seed, life)
+        decide(state, model, scene, key)
+        act(state, model, scene, key)
     state.step += 1
 
 
@@ -52,25 +63,28 @@ def begin(state):
 
 
 @compiled
-def sense_what_is_looked_at(state, mind, robot, raster, present, seed, life):
+def sense_what_is_looked_at(state, model, scene, key):
     """Sense as much as the search will look at: not the noise of sensors that see nothing."""
-    if behaviours.ignores_the_dark(mind.wander) and is_dark(state.x, state.y, robot, raster):
+    wander, robot = model.mind.wander, model.robot
+    if behaviours.ignores_the_dark(wander) and is_dark(state.x, state.y, robot, scene.raster):
         for n in range(len(state.readings)):
             state.readings[n] = 0
     else:
-        sense(state, robot, raster, present, seed, life)
+        sense(state, model.robot, scene, key)
 
 
 @compiled
-def sense(state, robot, raster, present, seed, life):
+def sense(state, robot, scene, key):
     """Read the infrared sensors where the robot stands."""
-    words = bits(seed, life, SENSORS, state.step)
+    words = bits(key.seed, key.life, SENSORS, state.step)
+    raster, present = scene.raster, scene.present
     read_infrared(state.x, state.y, state.heading, robot, raster, present, words, state.readings)
 
 
 @compiled
-def metabolise(state, mind, functions):
+def metabolise(state, model):
     """Let the variables drift for one step and the drives follow them; end a life that must."""
+    mind, functions = model.mind, model.functions
     failure.asks(state, failure.LAW)
     homeostasis.metabolise(state.values, mind, functions.law)
     for v in range(len(state.values)):
@@ -84,7 +98,7 @@ def metabolise(state, mind, functions):
     state.drive_sum += total / len(state.drives)
     if any_custom():
         check_needs(state, mind)
-    perish(state, mind, homeostasis.METABOLISM)
+    check_viability(state, mind, homeostasis.METABOLISM)
 
 
 @compiled
@@ -98,28 +112,33 @@ def check_needs(state, mind):
 
 
 @compiled
-def decide(state, mind, robot, raster, present, functions, seed, life):
+def decide(state, model, scene, key):
     """Set the motor commands of this step, meeting an object if one is near."""
+    if state.mode == WANDER and meet(state, model, scene, key):
+        commit(state, model.mind, choose(state, model, key))
+    drive(state, model, scene, key)
+
+
+@compiled
+def drive(state, model, scene, key):
+    """Set the motor commands that what the robot is doing calls for."""
     if state.mode == WANDER:
-        look_around(state, mind, robot, raster, present, functions, seed, life)
-    if state.mode == WANDER:
-        search(state, mind, robot, functions, seed, life)
+        search(state, model, key)
     elif state.mode == ACT:
         state.left = 0
         state.right = 0
     else:
-        steer(state, mind, raster)
+        steer(state, model.mind, scene.raster)
 
 
 @compiled
-def act(state, mind, robot, raster, present, functions, seed, life):
+def act(state, model, scene, key):
     """Move by the motor commands, and go on with what the robot is doing."""
-    go(state, robot, raster, present, seed, life)
+    mind, robot, raster = model.mind, model.robot, scene.raster
+    move_and_collide(state, robot, scene, key)
     state.mode_steps += 1
     if state.mode == APPROACH:
-        distance = distance_to(state.site, state.x, state.y, raster)
-        ahead, aside = bearing(state, raster)
-        if distance <= robot.radius + mind.contact_range and behaviours.faces(ahead, aside):
+        if is_reached(state, model, raster):
             state.event |= REACHED
             change_mode(state, ACT)
         elif state.mode_steps >= mind.approach_steps:
@@ -128,7 +147,7 @@ def act(state, mind, robot, raster, present, functions, seed, life):
             abandon(state)
     elif state.mode == ACT:
         if state.mode_steps >= mind.interaction_steps:
-            finish(state, mind, raster, present, functions, seed, life)
+            end_act(state, model, scene, key)
     elif state.mode == LEAVE:
         ahead, aside = bearing(state, raster)
         if behaviours.has_left(ahead, aside) or state.mode_steps >= mind.leave_steps:
@@ -138,11 +157,42 @@ def act(state, mind, robot, raster, present, functions, seed, life):
 
 
 @compiled
-def search(state, mind, robot, functions, seed, life):
+def begin_act(state, model, scene, key, behaviour):
+    """Begin an act with the nearest object in contact, if it is faced."""
+    mind, raster = model.mind, scene.raster
+    site = met_site(state, model.robot.radius + mind.contact_range, scene)
+    if site == NO_SITE:
+        return
+    before, state.site = state.site, site
+    if not is_reached(state, model, raster):
+        state.site = before
+        return
+    state.met = site
+    perceive(state, mind, raster.features[raster.site_type[site]], key)
+    judge(state, mind, raster.affords[raster.site_type[site]], model.functions)
+    encounter(state)
+    state.event |= REACHED
+    state.behaviour = behaviour
+    state.likelihoods[behaviour] = state.estimates[behaviour]
+    change_mode(state, ACT)
+
+
+@compiled
+def is_reached(state, model, raster):
+    """Tell whether the object the robot deals with is in contact, and faced."""
+    distance = distance_to(state.site, state.x, state.y, raster)
+    ahead, aside = bearing(state, raster)
+    reach = model.robot.radius + model.mind.contact_range
+    return distance <= reach and behaviours.faces(ahead, aside)
+
+
+@compiled
+def search(state, model, key):
     """Wander: no object calls for anything."""
+    mind, robot = model.mind, model.robot
     luck_a = luck_b = 0.0
     if behaviours.needs_luck(mind.wander, state.memory):
-        luck_a, luck_b, _, _ = uniforms(seed, life, WANDERING, state.step)
+        luck_a, luck_b, _, _ = uniforms(key.seed, key.life, WANDERING, state.step)
     failure.asks(state, failure.WANDER)
     left, right = behaviours.wander(
         mind.wander,
@@ -154,7 +204,7 @@ def search(state, mind, robot, functions, seed, life):
         luck_b,
         mind.cruise_speed,
         mind.turn_speed,
-        functions.wander,
+        model.functions.wander,
     )
     if (
         any_custom()
@@ -186,16 +236,16 @@ def steer(state, mind, raster):
 
 
 @compiled
-def go(state, robot, raster, present, seed, life):
+def move_and_collide(state, robot, scene, key):
     """Move by the motor commands, unless something stands in the way."""
     if state.left == 0 and state.right == 0:
         return
-    u_x, u_y, u_turn, _ = uniforms(seed, life, MOTORS, state.step)
+    u_x, u_y, u_turn, _ = uniforms(key.seed, key.life, MOTORS, state.step)
     x, y, heading = move(
         state.x, state.y, state.heading, state.left, state.right, robot, u_x, u_y, u_turn
     )
     x, y, heading, blocked = collide(
-        state.x, state.y, state.heading, x, y, heading, robot, raster, present
+        state.x, state.y, state.heading, x, y, heading, robot, scene.raster, scene.present
     )
     state.x = x
     state.y = y

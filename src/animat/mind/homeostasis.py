@@ -96,14 +96,14 @@ def metabolise(values, mind, custom):
 
 
 @compiled
-def settle(values, aftermath, mind):
-    """Take over the values [V] an act leads to, `aftermath` [V], held back at the bounds.
+def settle(values, values_after, mind):
+    """Take over the values [V] an act leads to, `values_after` [V], held back at the bounds.
 
     How far an act may carry a variable is a setting of each side: `overflow` for the satisfied
     side, `failed_act` for the other.
     """
     for v in range(len(values)):
-        values[v] = min(max(aftermath[v], mind.act_floor[v]), mind.act_ceiling[v])
+        values[v] = min(max(values_after[v], mind.act_floor[v]), mind.act_ceiling[v])
 
 
 @compiled
