@@ -11,6 +11,7 @@ import fcntl
 import math
 import os
 import signal
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,11 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from .experiments.published import published, reproduced  # noqa: F401
+
+# A process that reads bytecode starts in a third of the time, and there are many, whatever the
+# shell says.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 settings.register_profile(
     "default", deadline=None, max_examples=30, suppress_health_check=[HealthCheck.too_slow]
