@@ -371,6 +371,7 @@ class TestReplay:
         assert said.err == "animat: steps = 400: the life has lived 400 steps already; give more\n"
 
 
+@pytest.mark.usefixtures("undrawn")
 class TestReproduce:
     def test_it_prints_claims_and_cells_and_writes_everything(
         self, animat_says, monkeypatch, tmp_path
@@ -393,7 +394,7 @@ class TestReproduce:
         settings = str(out / "settings.toml")
         command = ("reproduce", *SMALL, "--seed", "7", "--settings", settings)
         assert animat_says(*command, "--out", "again").code == 0
-        for name in ("lives.parquet", "claims.json", "settings.toml", "figure3_grasp.svg"):
+        for name in ("lives.parquet", "claims.json", "settings.toml", "last_steps.parquet"):
             assert (tmp_path / "again" / name).read_bytes() == (out / name).read_bytes()
 
         monkeypatch.setattr(animat.report.reproduction_page, "publish", briefly)
