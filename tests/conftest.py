@@ -18,6 +18,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
+from .experiments.lived import lived  # noqa: F401
 from .experiments.published import published, reproduced  # noqa: F401
 
 # A process that reads bytecode starts in a third of the time, and there are many, whatever the

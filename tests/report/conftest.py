@@ -1,4 +1,4 @@
-"""The fixtures of the tests of reports: tables with a known answer, a study, and a multiverse."""
+"""The fixtures of the tests of reports: tables with a known answer, and a study."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import pytest
 from animat.study.store.results import Results
 from animat.study.store.results import open as open_results
 
-from ..experiments.conftest import lived, small  # noqa: F401
 from ..statistics.tables import likelihoods_table, lives_table, paper_table  # noqa: F401
 from .small import FOUR, ran
 
