@@ -90,13 +90,14 @@ def by_world(size: Size, repeat: int) -> Table:
         animat.World.random({}, name="empty"),
         *(arena(metres) for metres in (1, 2, 4)),
     ]
+    agents = minds()
     measures = {
         (world.name, sensors, agent): timing(
             bring_together(mind, world, animat.Khepera(infrared=sensors)), size.lives, size.steps
         )
         for world in worlds
         for sensors in SENSORS
-        for agent, mind in minds().items()
+        for agent, mind in agents.items()
     }
     taken = figures.in_turns(measures, repeat)
     least = {key: min(times) for key, times in taken.items()}

@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 
 from animat.life.encounter import met_site
+from animat.life.model import Key, Model
 from animat.life.step import step
 from animat.mind import behaviours, drives, homeostasis
 from animat.mind.behaviours import ACT, WANDER
@@ -17,6 +18,7 @@ from animat.numerics.streams import bits
 from animat.robot.collision import collide
 from animat.robot.infrared import is_dark, read_infrared
 from animat.robot.motion import move
+from animat.world.scene import Scene
 
 (
     NOTHING,
@@ -99,7 +101,9 @@ def do(which, state, scratch, mind, robot, raster, present, functions, seed, lif
     elif which == SENSING:
         sense(state.x + 0.0, state.y + 0.0, state, scratch, robot, raster, present)
     elif which == LOOKING:
-        scratch.site = met_site(state, robot.radius + mind.encounter_range, raster, present)
+        scratch.site = met_site(
+            state, robot.radius + mind.encounter_range, Scene(raster, present)
+        )
     elif which == WANDERING:
         left, right = behaviours.wander(
             mind.wander,
@@ -155,6 +159,7 @@ def alone(which, rounds, states, scratch, mind, robot, raster, functions, seed, 
 @njit(**OPTIONS)
 def in_step(which, until, states, scratch, mind, robot, raster, functions, seed, present):
     """Live lives on, with a part done once more in every step that needs it."""
+    model = Model(mind, robot, functions)
     for n in range(len(states)):
         state = states[n]
         life = np.uint64(n)
@@ -173,7 +178,7 @@ def in_step(which, until, states, scratch, mind, robot, raster, functions, seed,
                     seed,
                     life,
                 )
-            step(state, mind, robot, raster, present[n], functions, seed, life)
+            step(state, model, Scene(raster, present[n]), Key(seed, life))
 
 
 @njit(**OPTIONS)

@@ -11,6 +11,7 @@ import fcntl
 import math
 import os
 import signal
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,7 +20,13 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
+from .experiments.lived import lived  # noqa: F401
 from .experiments.published import published, reproduced  # noqa: F401
+
+# A process that reads bytecode starts in a third of the time, and there are many, whatever the
+# shell says.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 settings.register_profile(
     "default", deadline=None, max_examples=30, suppress_health_check=[HealthCheck.too_slow]
@@ -68,6 +75,16 @@ def compiled() -> None:
 
 
 @pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have figures made but not drawn, where they are not the point, as drawing takes seconds."""
+    from animat.figures import style
+
+    blank = style.new_figure(1, 1)
+    drawn = {"svg": style.svg(blank), "png": style.png(blank)}
+    monkeypatch.setattr(style, "_render", lambda fig, kind, *_, **__: drawn[kind])
+
+
+@pytest.fixture
 def commanded(compiled: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Be in an empty directory, where no command tells of its progress before its end."""
     from animat import progress
@@ -76,9 +93,22 @@ def commanded(compiled: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -
     monkeypatch.chdir(tmp_path)
 
 
+SHARED = ("lived", "published")
+"""Fixtures that take long and are used in several folders."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with what is long, so that workers do not wait for it in the end."""
-    items.sort(key=lambda item: item.get_closest_marker("long") is None)
+    """Begin with what is long, so that workers do not wait for it in the end; and let those follow
+    one another that share much, so that one worker has it.
+    """
+
+    def place(item: pytest.Item) -> int:
+        if item.get_closest_marker("long"):
+            return 0
+        used = [name in getattr(item, "fixturenames", ()) for name in SHARED]
+        return 1 + (used.index(True) if any(used) else len(SHARED))
+
+    items.sort(key=place)
 
 
 def compile_once() -> None:

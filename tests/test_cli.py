@@ -371,6 +371,7 @@ class TestReplay:
         assert said.err == "animat: steps = 400: the life has lived 400 steps already; give more\n"
 
 
+@pytest.mark.usefixtures("undrawn")
 class TestReproduce:
     def test_it_prints_claims_and_cells_and_writes_everything(
         self, animat_says, monkeypatch, tmp_path
@@ -393,7 +394,7 @@ class TestReproduce:
         settings = str(out / "settings.toml")
         command = ("reproduce", *SMALL, "--seed", "7", "--settings", settings)
         assert animat_says(*command, "--out", "again").code == 0
-        for name in ("lives.parquet", "claims.json", "settings.toml", "figure3_grasp.svg"):
+        for name in ("lives.parquet", "claims.json", "settings.toml", "last_steps.parquet"):
             assert (tmp_path / "again" / name).read_bytes() == (out / name).read_bytes()
 
         monkeypatch.setattr(animat.report.reproduction_page, "publish", briefly)
@@ -476,7 +477,7 @@ experiment."""
 def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name_and_is_gone_on_with(
     sent, tmp_path, animat_says, monkeypatch
 ):
-    size = ("--lives", "160", "--seeds", "1", "--steps", "60")
+    size = ("--lives", "40", "--seeds", "1", "--steps", "60")
     run = start("reproduce", *size, "--out", "out", cwd=tmp_path, by=("-c", STOPPED, sent.name))
     out, err = run.communicate()
     assert out == ""
@@ -491,13 +492,13 @@ def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name_and_is_gone_o
             "animat: interrupted; nothing is half-written\n"
         )
     log = tmp_path / ".out.partial" / "experiment2" / "log.jsonl"
-    assert 0 < log.read_text().count('"event": "part", ') < 64
+    assert 0 < log.read_text().count('"event": "part", ') < 20
     monkeypatch.setattr(animat.report.reproduction_page, "publish", briefly)
     assert animat_says("reproduce", *size, "--out", "out").code == 0
     assert names(tmp_path) == ["out"]
     log = tmp_path / "out" / "experiment2" / "log.jsonl"
     parts = [json.loads(line) for line in log.read_text().splitlines() if '"part"' in line]
-    assert sorted(part["number"] for part in parts if part["kind"] == "lives") == list(range(64))
+    assert sorted(part["number"] for part in parts if part["kind"] == "lives") == list(range(20))
 
 
 @pytest.mark.usefixtures("compiled")

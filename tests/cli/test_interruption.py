@@ -21,15 +21,15 @@ def forever(numbers):
     while True:
         numbers[0] += 1.0
 
-def live_slice(*_):
+def advance(*_):
     print("stuck", flush=True)
     forever(np.zeros(1))
 
 class Stuck:
     def of(self, *_):
-        return live_slice
+        return advance
 
-animat.life.batch.live_slice = Stuck()
+animat.life.kernels.advance = Stuck()
 main()
 """
 

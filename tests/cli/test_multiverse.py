@@ -18,7 +18,7 @@ SMALL = [
 
 
 @pytest.fixture
-def animat_says(monkeypatch, capsys, tmp_path):
+def animat_says(undrawn, monkeypatch, capsys, tmp_path):
     """Run the command line in an empty directory; return its code and what it says."""
     monkeypatch.chdir(tmp_path)
 
@@ -33,7 +33,7 @@ def animat_says(monkeypatch, capsys, tmp_path):
 
 @pytest.fixture
 def briefly(monkeypatch):
-    """Stand in for publishing where it is not the point, as drawing takes seconds."""
+    """Stand in for publishing where it is not the point."""
 
     def publish(found, directory, command, tell):
         (directory / "report.html").write_text(command)

@@ -29,6 +29,7 @@ def test_a_page_is_written_and_the_short_of_it_printed(animat, results):
     assert animat("report", "results/small").code == 0
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_page_goes_where_it_is_asked_to(animat, results, tmp_path):
     said = animat("report", "results/small", "--by", "mind.agent", "--out", "page.html")
     assert said.code == 0
@@ -46,6 +47,7 @@ def test_the_page_goes_where_it_is_asked_to(animat, results, tmp_path):
         ([], "Missing argument"),
     ],
 )
+@pytest.mark.usefixtures("undrawn")
 def test_what_cannot_be_reported_is_refused(animat, results, tmp_path, arguments, complaint):
     said = animat("report", *arguments)
     assert said.code == 2

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import pytest
 
-from animat.experiments.reproduction import Reproduction, Size, reproduce
-from animat.report.reproduction_page import publish
-from animat.study.file.settings import LifeSettings
+if TYPE_CHECKING:
+    from animat.experiments.reproduction import Reproduction
 
 Told = list[tuple[str, int, int]]
 
@@ -24,6 +23,11 @@ class Published(NamedTuple):
 
 @pytest.fixture(scope="session")
 def published(tmp_path_factory: pytest.TempPathFactory) -> Published:
+    # The process that only starts the workers of pytest does without these.
+    from animat.experiments.reproduction import Size, reproduce
+    from animat.report.reproduction_page import publish
+    from animat.study.file.settings import LifeSettings
+
     directory = tmp_path_factory.mktemp("reproduction")
     told: Told = []
 

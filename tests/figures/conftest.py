@@ -157,27 +157,27 @@ def make_robot():
     return RobotDrawing(27.5, np.column_stack([forward, leftward, right]), 58.0, np.radians(22))
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def trace():
     return make_trace
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def learning():
     return make_learning
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def ratios():
     return make_ratios
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def world():
     return make_world
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def robot():
     return make_robot()
 

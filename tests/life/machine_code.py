@@ -24,6 +24,7 @@ from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 
 import animat
+from animat.life import control
 from animat.life.life import live
 from animat.life.likelihoods import likelihoods
 from animat.life.scenario import bring_together
@@ -82,6 +83,14 @@ def child() -> None:
         for mind in (Mind(), own):
             life = live(mind, world, steps=10, record=record)
             life.networks.likelihoods(dict.fromkeys(world.feature_names, 0.0))
+    lives = np.arange(1, dtype=np.uint64)
+    for mind in (Mind(), product):
+        asked = bring_together(mind, world)
+        states, present = asked.begin(1, lives)
+        here = asked, 1, lives, states, present
+        due = control.advance_to_choice(*here, 100)
+        control.take_choice(*here, np.zeros(1, np.int64), due)
+        control.command(*here, np.zeros((1, 2), np.int64), np.zeros(1, np.int64))
     found = {name: intermediate_codes(kernel) for name, kernel in kernels().items()}
     sys.stdout.write(json.dumps(found))
 

@@ -100,10 +100,10 @@ def child(uncompiled: str) -> None:
 
 
 def code() -> dict[str, Any]:
-    """Return what live_slice was compiled to in this process."""
+    """Return what advance was compiled to in this process."""
     import numba
 
-    from animat.life.kernels import live_slice
+    from animat.life.kernels import advance
     from animat.numerics.compiled import OPTIONS
 
     def product_and_sum(x):
@@ -111,7 +111,7 @@ def code() -> dict[str, Any]:
 
     fused = numba.njit(**{**OPTIONS, "fastmath": True})(product_and_sum)
     fused(1.0)
-    library, _ = live_slice.libraries[0]
+    library, _ = advance.libraries[0]
     _, processor, features = library.codegen.magic_tuple()
     assembly = library.get_asm_str()
     return {

@@ -19,7 +19,10 @@ pytestmark = pytest.mark.long
 
 HERE = Path(__file__).parent
 
-STEPS = ("animat.life.kernels.live_slice", "animat.life.kernels.live_recorded")
+STEPS = tuple(
+    f"animat.life.kernels.{name}"
+    for name in ("advance", "advance_recorded", "advance_to_choice", "take_choice", "command")
+)
 
 
 @pytest.fixture(scope="module")

@@ -140,9 +140,9 @@ def record_of(**mind):
 def settled(record, variable, value):
     """Where an act that leads to `value` leaves a variable, and whether it kills."""
     values = np.full(3, 0.5)
-    aftermath = values.copy()
-    aftermath[variable] = value
-    settle(values, aftermath, record)
+    values_after = values.copy()
+    values_after[variable] = value
+    settle(values, values_after, record)
     others = np.delete(values, variable)
     assert (others == 0.5).all()
     return values[variable], first_outside(values, record) == variable

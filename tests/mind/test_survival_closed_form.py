@@ -39,7 +39,7 @@ def mind_of(**settings):
 
 
 @compiled
-def live(mind, seed, life, met, succeeds, values, aftermath):
+def live(mind, seed, life, met, succeeds, values, values_after):
     """Live until death: return the steps lived and the cause."""
     for v in range(len(values)):
         values[v] = mind.start[v]
@@ -53,17 +53,17 @@ def live(mind, seed, life, met, succeeds, values, aftermath):
         if meeting < met:
             effects = mind.success[0] if success < succeeds else mind.failure[0]
             for v in range(len(values)):
-                aftermath[v] = values[v] + effects[v]
-            settle(values, aftermath, mind)
+                values_after[v] = values[v] + effects[v]
+            settle(values, values_after, mind)
             if first_outside(values, mind) == 0:
                 return step, FAILURE
 
 
 @compiled
-def live_many(mind, seed, met, succeeds, lifespans, causes, values, aftermath):
+def live_many(mind, seed, met, succeeds, lifespans, causes, values, values_after):
     for life in range(len(lifespans)):
         lifespans[life], causes[life] = live(
-            mind, seed, np.uint64(life), met, succeeds, values, aftermath
+            mind, seed, np.uint64(life), met, succeeds, values, values_after
         )
 
 

@@ -8,7 +8,7 @@ import sys
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from animat.numerics.compiled import compiled
@@ -17,7 +17,7 @@ from animat.numerics.elementary import exponential, logistic, sine_cosine
 QUARTER = math.pi / 2
 LARGEST = sys.float_info.max
 SMALLEST_NORMAL = sys.float_info.min
-N = 4_000
+N = 4_000 if settings.get_current_profile_name() == "nightly" else 2_000
 
 
 @compiled

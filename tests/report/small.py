@@ -47,12 +47,10 @@ def study_of(text: str, directory: Path) -> Study:
     return read_study(file)
 
 
-def ran(text: str, directory: Path, *, without: int = 0) -> Results:
-    """The results of a study, of which the last `without` parts are not lived yet."""
+def ran(text: str, directory: Path) -> Results:
+    """The results of a study."""
     plan = Plan(study_of(text, directory))
     out = directory / plan.study.name
     with threads(2) as workers:
         run(plan, out, workers, lambda *_: None)
-    for part in sorted((out / "lives").glob("part-*.parquet"))[::-1][:without]:
-        part.unlink()
     return open_results(out)

@@ -82,6 +82,7 @@ def test_a_set_is_told_with_what_fresh_universes_say(lived):
     assert second[1] == "none"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_without_scikit_learn_the_page_says_how_to_have_models(lived, tmp_path):
     tables = interactions_tables(lived.found._replace(foretold=None))
     assert "pip install animat[multiverse]" in tables[-1].note

@@ -1,19 +1,13 @@
 """How a study was run, and what of it failed or is missing."""
 
 import pyarrow as pa
-import pytest
 
 from animat.report.run_details import ERRORS_SHOWN, how_run_section, notices
 
-from .small import FOUR, ran
+from .small import ran
 
 NONE = pa.table({"case": pa.array([], pa.int64()), "life": pa.array([], pa.int64()),
                  "error": pa.array([], pa.string())})  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    return ran(FOUR, tmp_path_factory.mktemp("four"))
 
 
 def failed(*errors):
@@ -47,8 +41,8 @@ def test_runs_on_other_machines_are_told_apart(results, monkeypatch):
     assert terms["Gone on with"] == later["made"]
 
 
-def test_a_study_that_still_runs_is_told_loudly(tmp_path):
-    results = ran(FOUR, tmp_path, without=1)
+def test_a_study_that_still_runs_is_told_loudly(copied):
+    results = copied(without=1)
     done, total = results.progress
     assert done < total
     section = how_run_section(results, results.progress, NONE)

@@ -9,6 +9,8 @@ from animat.statistics.findings import find
 
 from ..statistics.designs import crossed, lived
 
+pytestmark = pytest.mark.usefixtures("undrawn")
+
 
 def titles(found):
     return [section.title for section in result_sections(found)]

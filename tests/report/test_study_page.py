@@ -8,7 +8,7 @@ import pytest
 from animat.files.settings import SettingsError
 from animat.report.study_page import NOTHING_YET, write_report
 
-from .small import FAILING, FOUR, ran
+from .small import FAILING, ran
 
 
 class Page(HTMLParser):
@@ -42,11 +42,6 @@ def silent(*_):
 def reported(results, by=None, out=None):
     path, short = write_report(results, out, by, silent)
     return Page(path), short
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    return ran(FOUR, tmp_path_factory.mktemp("four"))
 
 
 @pytest.fixture(scope="module")
@@ -97,6 +92,7 @@ def test_the_same_results_make_the_same_page(results, page):
     assert reported(results)[0].source == page.source
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_only_factors_asked_for_are_told(results, tmp_path):
     page, _ = reported(results, by=["mind.agent"], out=tmp_path / "page.html")
     assert "mind.agent" in page.headings
@@ -118,6 +114,7 @@ def test_what_is_no_page_of_ours_is_not_replaced(results, tmp_path):
         write_report(results, tmp_path, None, silent)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_lives_that_failed_are_left_out_and_told(tmp_path):
     results = ran(FAILING, tmp_path)
     errors = [one for one in results.lives(["error"])["error"].to_pylist() if one]
@@ -128,16 +125,17 @@ def test_lives_that_failed_are_left_out_and_told(tmp_path):
     assert f"of {24 - len(errors)} lives ended" in page.text
 
 
-def test_a_study_that_still_runs_is_reported_as_far_as_it_is(tmp_path):
-    results = ran(FOUR, tmp_path, without=1)
-    page, short = reported(results)
+@pytest.mark.usefixtures("undrawn")
+def test_a_study_that_still_runs_is_reported_as_far_as_it_is(copied):
+    page, short = reported(copied(without=1))
     assert short[0].startswith("Not finished")
     assert page.text.index("Not finished") < page.text.index("What was asked")
     assert "All lives" in page.headings
 
 
-def test_what_is_finished_meanwhile_is_in_no_number(tmp_path):
-    results = ran(FOUR, tmp_path)
+@pytest.mark.usefixtures("undrawn")
+def test_what_is_finished_meanwhile_is_in_no_number(copied):
+    results = copied()
     (last, *_) = sorted((results.directory / "lives").glob("part-*.parquet"))[::-1]
     content = last.read_bytes()
     last.unlink()
@@ -154,14 +152,15 @@ def test_what_is_finished_meanwhile_is_in_no_number(tmp_path):
     assert f"{there} of 100 finished" in Page(path).text
 
 
-def test_a_study_of_which_nothing_is_finished_says_so(tmp_path):
-    results = ran(FOUR, tmp_path, without=10**6)
-    page, short = reported(results)
+@pytest.mark.usefixtures("undrawn")
+def test_a_study_of_which_nothing_is_finished_says_so(copied):
+    page, short = reported(copied(without=10**6))
     assert NOTHING_YET in short
     assert "All lives" not in page.headings
     assert "Methods and citation" in page.headings
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_robots_that_cannot_die_and_their_learning_are_reported(tmp_path):
     text = """
 name = "learning"

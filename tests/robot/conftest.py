@@ -1,7 +1,8 @@
 """Small worlds drawn by shapely, apart from the package's own drawing."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import pytest
@@ -16,7 +17,8 @@ SIDE = 300.0
 MARGIN = 20.0
 
 
-def _drawn(polygons: Sequence[shapely.Polygon] = (), resolution: float = 2.0) -> Raster:
+@cache
+def _drawn(polygons: tuple[shapely.Polygon, ...] = (), resolution: float = 2.0) -> Raster:
     """Draw polygons (a site each) on a square floor, free from 20 to 280 mm along x and y."""
     border = math.ceil(100 / resolution)
     cells = math.ceil(SIDE / resolution) + 2 * border
@@ -51,6 +53,7 @@ def _drawn(polygons: Sequence[shapely.Polygon] = (), resolution: float = 2.0) ->
     )
 
 
+@cache
 def _scattered(seed: int, resolution: float = 2.0, objects: int = 5) -> Raster:
     """Draw triangles, squares and hexagons at random; they may overlap."""
     rng = np.random.default_rng(seed)
@@ -60,12 +63,13 @@ def _scattered(seed: int, resolution: float = 2.0, objects: int = 5) -> Raster:
         angles = rng.uniform(0, math.tau) + math.tau * np.arange(corners) / corners
         outline = centre + radius * np.column_stack([np.cos(angles), np.sin(angles)])
         polygons.append(shapely.Polygon(outline))
-    return _drawn(polygons, resolution)
+    return _drawn(tuple(polygons), resolution)
 
 
+@cache
 def _dust(seed: int, resolution: float = 2.0, specks: int = 60) -> Raster:
     """Scatter specks, each a site in the middle of one cell: the hardest to see of all objects."""
-    raster = _drawn((), resolution)
+    raster = _drawn(resolution=resolution)
     rng = np.random.default_rng(seed)
     solid = raster.solid.copy()
     row, column = (rng.uniform(30, 270, (2, specks)) / resolution + raster.border).astype(int)
@@ -82,7 +86,7 @@ def dust() -> Drawing:
 
 @pytest.fixture(scope="session")
 def drawn() -> Drawing:
-    return _drawn
+    return lambda polygons=(), resolution=2.0: _drawn(tuple(polygons), resolution)
 
 
 @pytest.fixture(scope="session")

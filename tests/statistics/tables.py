@@ -70,12 +70,12 @@ def make_likelihoods(seeds, wrong=0, flaw=("eat", "TS"), value=0.5):
     return pa.Table.from_pylist(rows)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def lives_table():
     return make_lives
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def likelihoods_table():
     return make_likelihoods
 

@@ -1,8 +1,9 @@
 """Runs of a study that are broken off: a driver that imports everything once, and forks for each.
 
-    python faults.py HOW FOLDER NUMBER
+    python faults.py
 
-A line of JSON on the output tells what came of it. `Faults` counts every call that changes the
+For every line on its input, [how, folder, number] as JSON, one on its output tells what came of it.
+`Faults` counts every call that changes the
 disk, and can make one of them the last.
 """
 
@@ -313,4 +314,7 @@ HOW: dict[str, Callable[[Path, int], dict[str, Any]]] = {
 
 
 if __name__ == "__main__":
-    sys.stdout.write(json.dumps(HOW[sys.argv[1]](Path(sys.argv[2]), int(sys.argv[3]))) + "\n")
+    for line in sys.stdin:
+        how, directory, number = json.loads(line)
+        sys.stdout.write(json.dumps(HOW[how](Path(directory), number)) + "\n")
+        sys.stdout.flush()

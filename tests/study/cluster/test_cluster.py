@@ -36,6 +36,7 @@ from animat.study.execute.run import run, threads
 from animat.study.execute.signals import interruptible
 from animat.study.plan.plan import forget
 
+from .forks import Forks
 from .patience import LONGEST, PATIENT
 
 pytestmark = pytest.mark.long
@@ -62,9 +63,38 @@ def silent(*_, **__):
 
 def until(there: Callable[[], Any]) -> Any:
     """Wait for something, and return it."""
+    longest = time.monotonic() + LONGEST
     while not (found := there()):
-        time.sleep(0.05)
+        assert time.monotonic() < longest
+        time.sleep(0.02)
     return found
+
+
+@pytest.fixture
+def beside() -> Iterator[Callable[[Callable[[], None]], None]]:
+    """Do something in another thread; what it raises is raised here, who may wait for it."""
+    helpers: list[threading.Thread] = []
+    wrong: list[BaseException] = []
+
+    def fail(*_: Any) -> None:
+        raise wrong[0]
+
+    def start(do: Callable[[], None]) -> None:
+        def guarded() -> None:
+            try:
+                do()
+            except BaseException as error:
+                wrong.append(error)
+                os.kill(os.getpid(), signal.SIGUSR1)
+
+        helpers.append(threading.Thread(target=guarded))
+        helpers[-1].start()
+
+    before = signal.signal(signal.SIGUSR1, fail)
+    yield start
+    for helper in helpers:
+        helper.join()
+    signal.signal(signal.SIGUSR1, before)
 
 
 @pytest.fixture(autouse=True)
@@ -78,21 +108,29 @@ def patient(monkeypatch) -> None:
 
 
 class Machines:
-    """Schedulers and workers, each a process of its own."""
+    """Schedulers and workers, each a process of its own.
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self.processes: list[subprocess.Popen] = []
+    Those that have this animat are forked where it is loaded.
+    """
+
+    def __init__(self, folder: Path, forks: Forks) -> None:
+        self.folder, self.forks = folder, forks
+        self.processes: list[Any] = []
         self.environment = {**os.environ, "DASK_CONFIG": str(folder), "PYTHONPATH": str(SOURCE)}
 
-    def start(self, *arguments: str, cwd: Path | None = None, **environment: str) -> Any:
-        process = subprocess.Popen(
-            [sys.executable, "-m", "dask", *arguments, "--dashboard-address", "127.0.0.1:0"],
-            env=self.environment | environment,
-            cwd=cwd or self.folder,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
+    def start(self, arguments: list[str], source: Path, cwd: Path | None = None) -> Any:
+        arguments = [*arguments, "--dashboard-address", "127.0.0.1:0"]
+        cwd = cwd or self.folder
+        if source == SOURCE:
+            process = self.forks.start(arguments, cwd, self.environment)
+        else:
+            process = subprocess.Popen(
+                [sys.executable, "-m", "dask", *arguments],
+                env=self.environment | {"PYTHONPATH": str(source)},
+                cwd=cwd,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
         self.processes.append(process)
         return process
 
@@ -100,8 +138,8 @@ class Machines:
         """Start a scheduler, the last process until another is started; return its address."""
         with socket.create_server(("127.0.0.1", 0)) as free:
             port = str(free.getsockname()[1])
-        where = ("--host", "127.0.0.1", "--port", port, "--protocol", protocol)
-        self.start("scheduler", *where, PYTHONPATH=str(source))
+        where = ["--host", "127.0.0.1", "--port", port, "--protocol", protocol]
+        self.start(["scheduler", *where], source)
         address = f"{protocol}://127.0.0.1:{port}"
         until(lambda: self.answers(int(port)))
         return address
@@ -113,19 +151,28 @@ class Machines:
 
     def worker(self, address: str, cwd: Path | None = None, source: Path = SOURCE) -> Any:
         """Start a worker of one thread."""
-        alone = ("--nthreads", "1", "--no-nanny", "--host", "127.0.0.1")
-        return self.start("worker", address, *alone, cwd=cwd, PYTHONPATH=str(source))
+        alone = ["--nthreads", "1", "--no-nanny", "--host", "127.0.0.1"]
+        return self.start(["worker", address, *alone], source, cwd)
 
-    def end(self, *processes: subprocess.Popen) -> None:
-        for process in processes or self.processes:
+    def end(self, *processes: Any) -> None:
+        ended = processes or tuple(self.processes)
+        for process in ended:
             process.kill()
-        for process in processes or self.processes:
+        for process in ended:
             process.wait()
+            self.processes.remove(process)
 
 
 @pytest.fixture(scope="module")
-def machines(tmp_path_factory) -> Iterator[Machines]:
-    machines = Machines(tmp_path_factory.mktemp("machines"))
+def forks() -> Iterator[Forks]:
+    forks = Forks({**os.environ, "PYTHONPATH": str(SOURCE)})
+    yield forks
+    forks.end()
+
+
+@pytest.fixture(scope="module")
+def machines(tmp_path_factory, forks) -> Iterator[Machines]:
+    machines = Machines(tmp_path_factory.mktemp("machines"), forks)
     yield machines
     machines.end()
 
@@ -137,9 +184,9 @@ def plain(machines) -> str:
 
 
 @pytest.fixture(scope="module")
-def secure(tmp_path_factory) -> Iterator[Machines]:
+def secure(tmp_path_factory, forks) -> Iterator[Machines]:
     """A scheduler and two workers that speak TLS, as Dask's configuration says."""
-    machines = Machines(tmp_path_factory.mktemp("secure"))
+    machines = Machines(tmp_path_factory.mktemp("secure"), forks)
     made = Security.temporary()
     files = {}
     for name in ("tls_ca_file", "tls_client_cert", "tls_client_key"):
@@ -304,10 +351,10 @@ class TestRefused:
 
 class TestTheEnd:
     @pytest.fixture
-    def interrupting(self, secure, monkeypatch) -> Iterator[Callable[[int], list[str]]]:
+    def interrupting(self, secure, beside, monkeypatch) -> Iterator[Callable[[int], list[str]]]:
         """Press Ctrl-C so many times once the workers are at something; tell at what they were."""
         keys: list[str] = []
-        helpers, asked = [], []
+        asked = []
 
         @contextmanager
         def watched(stop):
@@ -322,15 +369,12 @@ class TestTheEnd:
                     os.kill(os.getpid(), signal.SIGINT)
                     asked[0].wait()
 
-            helpers.append(threading.Thread(target=wait))
-            helpers[-1].start()
+            beside(wait)
             return keys
 
         monkeypatch.setattr(running, "interruptible", watched)
         with watching(secure.address) as client:
             yield press
-            for helper in helpers:
-                helper.join()
             until(lambda: not at_work(client))
 
     def test_the_first_interruption_finishes_what_workers_are_at(
@@ -399,7 +443,7 @@ class TestTheEnd:
         with pytest.raises(ClusterError, match=wanted), cluster(plain, small, silent):
             pass
 
-    def test_a_part_that_kills_its_workers(self, machines, plain, faults, tmp_path):
+    def test_a_part_that_kills_its_workers(self, machines, plain, beside, faults, tmp_path):
         worker = machines.worker(plain)
 
         def kill() -> None:
@@ -413,11 +457,9 @@ class TestTheEnd:
         with watching(plain) as client:
             client.wait_for_workers(1, LONGEST)
             before = client.run_on_scheduler(allow, failures=0)
-            helper = threading.Thread(target=kill)
-            helper.start()
+            beside(kill)
             with pytest.raises(ClusterError, match="1 workers died one after another"):
                 lived_on(plain, faults.plan(ENDLESS), tmp_path)
-            helper.join()
             client.run_on_scheduler(allow, failures=before)
         machines.end(worker)
 

@@ -25,7 +25,7 @@ def test_the_experiments_of_the_paper_and_a_starter_are_there():
 @pytest.mark.parametrize("name", NAMES)
 def test_each_can_be_lived_and_goes_by_its_name(name):
     sampled = "sample" in tomllib.loads(shipped(name).read_text("utf-8")).get("design", {})
-    study = read_study(shipped(name), ["design.sample.points=64"] if sampled else [])
+    study = read_study(shipped(name), ["design.sample.points=8"] if sampled else [])
     assert study.name == name
     check_livable(Plan(study))
 

@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Callable, Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -31,43 +32,48 @@ NIGHTLY = settings.get_current_profile_name() == "nightly"
 STEP = 1 if NIGHTLY else 5
 """One in so many writes is tried."""
 
-KILLS = 200 if NIGHTLY else 30
+KILLS = 200 if NIGHTLY else 15
 
 
-def driven(how: str, folder: Path, number: int = 0) -> dict[str, Any]:
-    """What a driver tells that breaks off runs in one way."""
-    done = subprocess.run(
-        [
-            sys.executable,
-            str(Path(__file__).parents[1] / "faults.py"),
-            how,
-            str(folder),
-            str(number),
-        ],
-        check=False,
-        capture_output=True,
+@pytest.fixture(scope="module")
+def driven() -> Iterator[Callable[..., dict[str, Any]]]:
+    """What a driver tells that breaks off runs in one way; it imports everything once."""
+    with subprocess.Popen(
+        [sys.executable, str(Path(__file__).parents[1] / "faults.py")],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
         text=True,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    ) as driver:
+        assert driver.stdin is not None
+        assert driver.stdout is not None
+        asked, told = driver.stdin, driver.stdout
+
+        def driven(how: str, folder: Path, number: int = 0) -> dict[str, Any]:
+            asked.write(json.dumps([how, str(folder), number]) + "\n")
+            asked.flush()
+            return json.loads(told.readline())
+
+        yield driven
 
 
-def test_a_run_killed_at_any_write_is_gone_on_with(faults, tmp_path):
+def test_a_run_killed_at_any_write_is_gone_on_with(driven, faults, tmp_path):
     told = driven("killed at writes", tmp_path, STEP)
     assert told["points"] > 60
     assert told["ends"] == [KILLED, faults.UNDISTURBED]
     assert told["different"] == []
 
 
-def test_a_run_killed_at_any_moment_is_gone_on_with(faults, tmp_path):
+def test_a_run_killed_at_any_moment_is_gone_on_with(driven, tmp_path):
     told = driven("killed at any moment", tmp_path, KILLS)
     assert told["kills"] == KILLS
     assert told["complete"] > 0
     assert told["different"] == 0
 
 
-def test_a_run_that_finds_no_room_at_any_write_says_so_and_is_gone_on_with(faults, tmp_path):
+def test_a_run_that_finds_no_room_at_any_write_says_so_and_is_gone_on_with(
+    driven, faults, tmp_path
+):
     """Some writes are no loss: what is taken away, and words nobody reads."""
     told = driven("no room at writes", tmp_path, STEP)
     assert told["points"] > 60
@@ -76,14 +82,14 @@ def test_a_run_that_finds_no_room_at_any_write_says_so_and_is_gone_on_with(fault
     assert told["different"] == []
 
 
-def test_a_run_on_a_full_disk_says_so_and_is_gone_on_with(faults, tmp_path):
+def test_a_run_on_a_full_disk_says_so_and_is_gone_on_with(driven, faults, tmp_path):
     told = driven("full disks", tmp_path)
     assert told["ends"]["limit"] == faults.FAILED
     assert set(told["ends"].values()) == {faults.FAILED}
     assert told["different"] == []
 
 
-def test_a_directory_that_may_only_be_read_is_refused_and_stays_as_it_is(faults, tmp_path):
+def test_a_directory_that_may_only_be_read_is_refused_and_stays_as_it_is(driven, faults, tmp_path):
     told = driven("read only", tmp_path)
     assert told == {
         "ended": faults.WRONG,
