@@ -7,7 +7,6 @@ import pytest
 
 from animat.experiments import judging as module
 from animat.experiments.judging import judge
-from animat.files.checksummed_table import seal_of, sealed
 from animat.files.settings import validated
 from animat.statistics.claims import judge_learning, judge_lifespans
 from animat.statistics.lives import column
@@ -15,6 +14,7 @@ from animat.statistics.universes import CELLS, CLAIMS, EFFECTS
 from animat.study.execute.run import run, threads
 from animat.study.file.study import Study
 from animat.study.plan.plan import Plan
+from animat.study.plan.shard import shard_file, shard_header
 from animat.study.store.results import open as open_results
 
 
@@ -111,13 +111,12 @@ def fail_one(folder, place):
 
 
 def with_errors(file, errors):
-    """Write a part anew, sealed, with these errors, and return the rows it had."""
-    rows, seal = pq.read_table(file), seal_of(file)
-    assert seal is not None
+    """Write a part anew, with these errors, and return the rows it had."""
+    rows, said = pq.read_table(file), shard_header(file)
     place = rows.schema.get_field_index("error")
     failed = rows.set_column(place, "error", pa.array(errors, pa.string()))
     how_many = sum(error is not None for error in errors)
-    file.write_bytes(sealed([failed], rows.schema, seal.identity, seal.steps, failed=how_many))
+    file.write_bytes(shard_file([failed], rows.schema, said.identity, said.steps, how_many))
     return rows
 
 
