@@ -8,9 +8,9 @@ import pytest
 from animat.experiments import judging as module
 from animat.experiments.judging import judge
 from animat.files.settings import validated
-from animat.statistics.claims import judge_learning, judge_lifespans
+from animat.statistics import paper_claims
+from animat.statistics.claims import CELLS, CLAIMS, EFFECTS
 from animat.statistics.lives import column
-from animat.statistics.universes import CELLS, CLAIMS, EFFECTS
 from animat.study.execute.run import run, threads
 from animat.study.file.study import Study
 from animat.study.plan.plan import Plan
@@ -50,8 +50,6 @@ def test_every_universe_is_judged_by_its_own_lives_and_teachers(plan, results, j
             cells.append(rows)
             spans = column(rows, "lifespan")
             assert row[f"mean_{world}_{agent}"] == pytest.approx(spans.mean())
-        for claim in judge_lifespans(pa.concat_tables(cells), resamples=99):
-            assert row[claim.id] == claim.verdict
         taught = plan.classes[plan.class_of(plan.lived.index(plan.cases[cases[1]]))]
         rows = teachers.filter(pc.field("identity") == taught.identity).to_pylist()
         told = [
@@ -62,9 +60,11 @@ def test_every_universe_is_judged_by_its_own_lives_and_teachers(plan, results, j
             for thing, afforded in (("TS", network == "eat"), ("CS", network == "eat"),
                                     ("TL", network == "shelter"), ("CL", network == "shelter"))
         ]  # fmt: skip
-        learning = judge_learning(pa.Table.from_pylist(told), resamples=99)
-        assert row["learning_error"] == pytest.approx(learning.ours)
-        assert row["C7"] == learning.verdict
+        claims = paper_claims.judge(
+            pa.concat_tables(cells), pa.Table.from_pylist(told), resamples=99
+        )
+        assert row["learning_error"] == pytest.approx(claims[-1].ours)
+        assert {name: row[name] for name in CLAIMS} == {one.id: one.verdict for one in claims}
 
 
 def test_the_table_has_the_readings_then_what_is_told(judged):

@@ -12,10 +12,10 @@ from animat.experiments.multiverse import (
     run_multiverse,
 )
 from animat.files.settings import SettingsError
+from animat.statistics.claims import CLAIMS
 from animat.statistics.estimates import share
 from animat.statistics.lives import column
 from animat.statistics.sufficient_sets import Condition, SmallestSet
-from animat.statistics.universes import CLAIMS
 from animat.study.execute.run import threads
 from animat.study.store.results import open as open_results
 

@@ -14,9 +14,9 @@ from animat.report.multiverse_tables import (
     shares_table,
     smallest_table,
 )
+from animat.statistics.claims import CLAIMS
 from animat.statistics.estimates import share
 from animat.statistics.sufficient_sets import Condition, Confirmation, SmallestSet
-from animat.statistics.universes import CLAIMS
 
 
 @pytest.fixture(scope="module")

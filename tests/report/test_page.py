@@ -20,8 +20,8 @@ from animat.report.page import (
     picture_file,
     write_page,
 )
-from animat.statistics.claims import judge
 from animat.statistics.estimates import UNKNOWN, Estimate
+from animat.statistics.paper_claims import judge
 from animat.statistics.survival import summarise
 
 

@@ -1,8 +1,8 @@
 import pytest
 
+from animat.statistics.claims import CLAIMS
 from animat.statistics.estimates import share
 from animat.statistics.shares import VERDICTS, verdict_shares
-from animat.statistics.universes import CLAIMS
 
 
 def test_the_shares_of_a_claim_add_up_and_have_wilsons_interval(planted):

@@ -3,9 +3,9 @@ import pyarrow as pa
 import pytest
 from scipy import stats
 
+from animat.statistics.claims import CLAIMS, RATIOS
 from animat.statistics.estimates import share
 from animat.statistics.time_limit import cap_effects
-from animat.statistics.universes import CLAIMS, RATIOS
 
 
 def universes(numbers, verdict, gain):

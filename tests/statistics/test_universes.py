@@ -2,17 +2,15 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from animat.statistics.claims import ABUNDANT_GAIN, FARTHEST, judge_learning, judge_lifespans
-from animat.statistics.lives import cell, column
-from animat.statistics.universes import (
+from animat.statistics.claims import (
+    ABUNDANT_GAIN,
     CELLS,
     CLAIMS,
-    complete,
-    deaths,
-    holds,
-    judge_universes,
-    verdicts_by_value,
+    FARTHEST,
 )
+from animat.statistics.lives import cell, column
+from animat.statistics.paper_claims import judge
+from animat.statistics.universes import complete, deaths, holds, judge_universes, verdicts_by_value
 
 MEANS = [
     [2_000, 4_000, 1_000, 1_500],
@@ -42,26 +40,24 @@ def of_universe(table, number):
 
 
 @pytest.mark.parametrize("universe", range(len(MEANS)))
-def test_a_universe_is_judged_as_it_would_be_alone(lives, likelihoods, judged, universe):
-    """The oracle: the claims as a reproduction has them, one universe at a time."""
+def test_a_universe_is_judged_as_a_reproduction_would_be(lives, likelihoods, judged, universe):
     row = judged.to_pylist()[universe]
     assert row["universe"] == universe
-    alone = judge_lifespans(of_universe(lives, universe), resamples=999)
-    for claim in alone:
-        assert row[claim.id] == claim.verdict, claim.id
-    by_id = {claim.id: claim for claim in alone}
+    robots = of_universe(likelihoods, universe).drop_columns("universe")
+    claims = judge(
+        of_universe(lives, universe).drop_columns("universe"),
+        robots.rename_columns({"robot": "seed"}),
+        resamples=999,
+    )
+    by_id = {claim.id: claim for claim in claims}
+    assert {name: row[name] for name in CLAIMS} == {c.id: c.verdict for c in claims}
     pairs = {"abundant_gain": by_id["C1"], "scarce_gain": by_id["C2"]}
     pairs |= {"gain_difference": by_id["C6"]}
     pairs |= dict(zip(("worlds_blind", "worlds_af"), by_id["C3"].parts, strict=True))
     for name, ours in pairs.items():
         told = [row[name], row[f"{name}_low"], row[f"{name}_high"]]
         np.testing.assert_allclose(told, [ours.ours, ours.low, ours.high], rtol=1e-12)
-    robots = of_universe(likelihoods, universe).rename_columns(
-        ["universe", "seed", *likelihoods.column_names[2:]]
-    )
-    learning = judge_learning(robots, resamples=999)
-    assert row["C7"] == learning.verdict
-    assert row["learning_error"] == pytest.approx(learning.ours, rel=1e-12)
+    assert row["learning_error"] == pytest.approx(by_id["C7"].ours, rel=1e-12)
     assert row["learning_error_low"] <= row["learning_error"] <= row["learning_error_high"]
 
 

@@ -83,7 +83,7 @@ def multiverse(
 def _say_what(asked: Study, directory: Path) -> None:
     from animat.experiments.multiverse_designs import count
     from animat.experiments.universes import readings_of
-    from animat.statistics.universes import CELLS
+    from animat.statistics.claims import CELLS
     from animat.study.file.cases import excluded
 
     print(

@@ -11,8 +11,9 @@ import pyarrow.compute as pc
 from numpy.typing import NDArray
 
 from animat.experiments.universes import Reading, Universes, universes_of
+from animat.statistics.claims import CELLS
 from animat.statistics.estimates import RESAMPLES
-from animat.statistics.universes import CELLS, complete, deaths, judge_universes
+from animat.statistics.universes import complete, deaths, judge_universes
 from animat.study.plan.plan import Class, Plan, world_of
 from animat.study.store.results import Results
 

@@ -20,6 +20,7 @@ from animat.experiments.multiverse_designs import fresh, longer, portions
 from animat.experiments.universes import Reading, Universes, readings_of
 from animat.files.settings import SettingsError
 from animat.progress import Telling
+from animat.statistics.claims import CLAIMS
 from animat.statistics.interactions import strongest_interactions
 from animat.statistics.marginal_effects import marginal_effects
 from animat.statistics.predict import Foretold, available, foretell
@@ -27,7 +28,6 @@ from animat.statistics.readings import codes, fewest_together
 from animat.statistics.shares import verdict_shares
 from animat.statistics.sufficient_sets import Confirmation, SmallestSet, confirm, smallest_set
 from animat.statistics.time_limit import cap_effects
-from animat.statistics.universes import CLAIMS
 from animat.study.execute.run import Workers, run
 from animat.study.file.cases import Excluded, excluded
 from animat.study.file.study import Study

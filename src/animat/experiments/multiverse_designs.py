@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from animat.experiments.universes import CELL, label, readings_of, spread_factors
 from animat.files.settings import validated
-from animat.statistics.universes import CELLS
+from animat.statistics.claims import CELLS
 from animat.study.file.axes import axes, combinations, is_whole, left_out
 from animat.study.file.factors import Range
 from animat.study.file.keys import read_key

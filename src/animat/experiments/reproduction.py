@@ -19,8 +19,8 @@ from animat.files.settings import SettingsError, validated
 from animat.life.life import check as check_life
 from animat.life.scenario import LifeError
 from animat.progress import Telling
-from animat.statistics.claims import Claim, judge
 from animat.statistics.lives import cell, cells, first_lives
+from animat.statistics.paper_claims import Claim, judge
 from animat.statistics.survival import CellSummary, LogRank, logrank, summarise
 from animat.study.execute.run import run, threads
 from animat.study.file.builtin import shipped

@@ -16,8 +16,8 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from animat.files.settings import SettingsError
+from animat.statistics.claims import CELLS
 from animat.statistics.numerals import numeral
-from animat.statistics.universes import CELLS
 from animat.study.file.factors import Range, Scalar
 from animat.study.file.study import Study
 

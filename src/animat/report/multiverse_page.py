@@ -30,11 +30,11 @@ from animat.report.multiverse_tables import (
     shares_table,
     smallest_table,
 )
+from animat.statistics.claims import CELLS, CLAIMS
 from animat.statistics.estimates import share
 from animat.statistics.predict import Foretold
 from animat.statistics.sufficient_sets import NEARLY_ALL, SUPPORT, SURELY
 from animat.statistics.survival import ALIVE, DeathCount
-from animat.statistics.universes import CELLS, CLAIMS
 
 GAINS = {
     "abundant_gain": "factor on the abundant gain",

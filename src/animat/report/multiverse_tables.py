@@ -7,11 +7,11 @@ import pyarrow as pa
 
 from animat.experiments.multiverse import Multiverse
 from animat.report.page import Badge, TableBlock, interval
+from animat.statistics.claims import CELLS, EFFECTS
 from animat.statistics.estimates import Estimate, mean
 from animat.statistics.lives import column
 from animat.statistics.marginal_effects import largest_imbalance
 from animat.statistics.sufficient_sets import NEARLY_ALL, Condition
-from animat.statistics.universes import CELLS, EFFECTS
 
 WORDS = {
     "C1": "AF outlives BLIND, abundant world",

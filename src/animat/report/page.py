@@ -16,8 +16,9 @@ from matplotlib.figure import Figure
 
 from animat.figures.style import png, svg
 from animat.files.atomic import write_whole
-from animat.statistics.claims import Claim, Part, Verdict
+from animat.statistics.claims import Verdict
 from animat.statistics.estimates import LEVEL, Estimate
+from animat.statistics.paper_claims import Claim, Part
 from animat.statistics.survival import CellSummary
 
 PAPER = (

@@ -26,8 +26,8 @@ from animat.life.scenario import bring_together
 from animat.report import page
 from animat.report.inputs import inputs_sections
 from animat.report.readings_taken import CALIBRATED, ERRATA, readings
-from animat.statistics.claims import claims_json
 from animat.statistics.lives import cells
+from animat.statistics.paper_claims import claims_json
 from animat.statistics.survival import kaplan_meier
 
 FIGURES: dict[str, tuple[str, str]] = {

@@ -15,9 +15,10 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from scipy import stats
 
+from animat.statistics.claims import CLAIMS
 from animat.statistics.estimates import LEVEL, Estimate, share
 from animat.statistics.readings import MOST_UNIVERSES, Readings, codes, some_of
-from animat.statistics.universes import CLAIMS, holds
+from animat.statistics.universes import holds
 
 FOLDS = 10
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from animat.statistics.estimates import LEVEL, RESAMPLES, UNKNOWN, Estimate, Method, of_means
+from animat.statistics.estimates import LEVEL, RESAMPLES, UNKNOWN, Estimate, of_means
 
 SETS_AT_LEAST = 20
 """Fewer sets than this tell little of how much they differ."""
@@ -205,8 +205,15 @@ def _of(
     if count < 2:
         value = function(*(float(each.mean()) for each in totals))
         return Estimate(float(value), float("nan"), float("nan"))
-    method: Method | None = "normal" if count > BOOTSTRAPPED_AT_MOST else None
-    return of_means(totals, function, paired=True, seed=seed, resamples=resamples, method=method)
+    if count <= BOOTSTRAPPED_AT_MOST:
+        return of_means(totals, function, seed=seed, resamples=resamples)
+    samples = np.stack(totals)
+    means = samples.mean(axis=1)
+    spread = np.atleast_2d(np.cov(samples)) / count
+    rng = np.random.default_rng(seed)
+    drawn = rng.multivariate_normal(means, spread, resamples, check_valid="ignore", method="eigh")
+    low, high = np.quantile(function(*drawn.T), ((1 - LEVEL) / 2, (1 + LEVEL) / 2))
+    return Estimate(float(function(*means)), float(low), float(high))
 
 
 def _totals(values: Sequence[NDArray[np.float64]], sets: Sets) -> list[NDArray[np.float64]]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pyarrow as pa
 
+from animat.statistics.claims import CLAIMS
 from animat.statistics.estimates import share
 from animat.statistics.lives import column
-from animat.statistics.universes import CLAIMS, verdicts_by_value
+from animat.statistics.universes import verdicts_by_value
 
 VERDICTS = ("holds", "undecided", "fails")
 

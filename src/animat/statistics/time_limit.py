@@ -6,9 +6,9 @@ import numpy as np
 import pyarrow as pa
 from scipy import stats
 
+from animat.statistics.claims import CLAIMS, RATIOS
 from animat.statistics.estimates import LEVEL, share
 from animat.statistics.lives import column
-from animat.statistics.universes import CLAIMS, RATIOS
 
 
 def cap_effects(short: pa.Table, long: pa.Table) -> pa.Table:
