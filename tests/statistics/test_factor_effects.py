@@ -6,7 +6,7 @@ from lifelines.utils import restricted_mean_survival_time
 from scipy import stats
 
 from animat.statistics.estimates import of_means
-from animat.statistics.factor_effects import margin
+from animat.statistics.factor_effects import factor_effect
 from animat.statistics.lives import cell
 from animat.statistics.resampling import CASES, COMBINATIONS, LIVES
 from animat.statistics.sample import sample
@@ -31,7 +31,7 @@ def two_by_two(lives=40, effect=1.0, **given):
 
 
 def of(table, name, factors=("agent", "world"), **given):
-    return margin(sample(table, factors), name, resamples=199, **given)
+    return factor_effect(sample(table, factors), name, resamples=199, **given)
 
 
 def test_a_level_holds_the_lives_of_all_other_levels():

@@ -8,9 +8,18 @@ from animat.statistics.claims import (
     CLAIMS,
     FARTHEST,
 )
+from animat.statistics.estimates import share
 from animat.statistics.lives import cell, column
 from animat.statistics.paper_claims import judge
-from animat.statistics.universes import complete, deaths, holds, judge_universes, verdicts_by_value
+from animat.statistics.universes import (
+    VERDICTS,
+    complete,
+    deaths,
+    holds,
+    judge_universes,
+    verdict_shares,
+    verdicts_by_value,
+)
 
 MEANS = [
     [2_000, 4_000, 1_000, 1_500],
@@ -197,3 +206,28 @@ def test_of_a_single_life_and_a_single_robot_nothing_is_decided(make_lives, make
     )
     assert {table[claim][0].as_py() for claim in CLAIMS} == {"undecided"}
     assert np.isfinite(table["abundant_gain"][0].as_py())
+
+
+def test_the_shares_of_a_claim_add_up_and_have_wilsons_interval(planted):
+    rows = verdict_shares(planted).to_pylist()
+    assert [(row["claim"], row["verdict"]) for row in rows] == [
+        (claim, verdict) for claim in CLAIMS for verdict in VERDICTS
+    ]
+    for claim in CLAIMS:
+        of_claim = [row for row in rows if row["claim"] == claim]
+        assert sum(row["universes"] for row in of_claim) == planted.num_rows
+        assert sum(row["share_by_value"] for row in of_claim) == pytest.approx(1.0)
+        for row in of_claim:
+            expected = share(row["universes"], planted.num_rows)
+            assert (row["share"], row["low"], row["high"]) == expected
+
+
+def test_a_planted_effect_holds_in_its_share_of_universes(planted):
+    rows = {(row["claim"], row["verdict"]): row for row in verdict_shares(planted).to_pylist()}
+    assert rows["C1", "holds"]["share"] == pytest.approx(0.25, abs=0.03)
+    assert rows["C4", "fails"]["share"] > 0.9
+    assert rows["C7", "holds"]["share"] == 0.5
+    # Where there is no effect, half of the estimates lie on either side of nothing.
+    assert rows["C2", "undecided"]["share"] > 0.85
+    assert rows["C2", "holds"]["share_by_value"] == pytest.approx(0.5, abs=0.15)
+    assert rows["C2", "undecided"]["share_by_value"] == 0.0

@@ -76,7 +76,7 @@ def readings_of(study: Study) -> tuple[Reading, ...]:
     if study.teacher is None or not study.paired:
         raise SettingsError(
             f"{study.name}: a multiverse needs a [teacher], and paired = true: AF and BLIND are to"
-            " meet the same luck"
+            " share their random numbers"
         )
     factors = {
         name: tuple(levels)

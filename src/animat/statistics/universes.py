@@ -16,7 +16,7 @@ from animat.statistics.claims import (
     over_robots,
     verdicts,
 )
-from animat.statistics.estimates import RESAMPLES, Estimate, Estimates
+from animat.statistics.estimates import RESAMPLES, Estimate, Estimates, share
 from animat.statistics.lives import column
 
 
@@ -128,3 +128,34 @@ def _plain(table: pa.Table, name: str) -> pa.ChunkedArray:
     """A column without its dictionary, whose batches may differ."""
     values = table.column(name)
     return values.cast(values.type.value_type) if pa.types.is_dictionary(values.type) else values
+
+
+VERDICTS = ("holds", "undecided", "fails")
+
+
+def verdict_shares(universes: pa.Table) -> pa.Table:
+    """For each claim and verdict the share of universes with Wilson's interval.
+
+    Columns: `claim`, `verdict`, `universes`, `share`, `low`, `high`, and `share_by_value`: the
+    share if every universe were judged by its estimates alone, as if they had no error. Many
+    lives would turn the shares into these, if the estimates are not biased.
+    """
+    by_value = verdicts_by_value(universes)
+    rows = []
+    for claim in CLAIMS:
+        judged = column(universes, claim)
+        for verdict in VERDICTS:
+            count = int(np.sum(judged == verdict))
+            value, low, high = share(count, len(judged))
+            rows.append(
+                {
+                    "claim": claim,
+                    "verdict": verdict,
+                    "universes": count,
+                    "share": value,
+                    "low": low,
+                    "high": high,
+                    "share_by_value": by_value[claim].count(verdict) / len(judged),
+                }
+            )
+    return pa.Table.from_pylist(rows)
