@@ -15,11 +15,12 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
+from scipy import stats
 
-from animat.statistics.estimates import Estimate, bootstrapped, share
+from animat.statistics.claims import CLAIMS
+from animat.statistics.estimates import LEVEL, Estimate, share
 from animat.statistics.lives import column
 from animat.statistics.marginal_effects import difference
-from animat.statistics.universes import CLAIMS
 
 GAINS = ("abundant_gain", "scarce_gain", "worlds_blind")
 LIFESPANS = ("mean_abundant_BLIND", "mean_abundant_AF", "mean_scarce_BLIND", "mean_scarce_AF")
@@ -58,7 +59,9 @@ def main() -> None:
 
 
 def _spread(logs: NDArray[np.float64]) -> str:
-    median = Estimate(*np.exp(bootstrapped([logs], np.median)).tolist())
+    drawn = stats.bootstrap((logs,), np.median, confidence_level=LEVEL, rng=0, method="percentile")
+    ends = drawn.confidence_interval
+    median = Estimate(*np.exp([np.median(logs), ends.low, ends.high]).tolist())
     low, high = np.exp(np.quantile(logs, [0.1, 0.9]))
     return f"median {_told(median)}, a tenth below {_number(low)}, a tenth above {_number(high)}"
 

@@ -60,4 +60,4 @@ def test_while_a_study_runs_it_can_be_reported_on(animat, results):
         part.unlink()
     said = animat("report", "results/small")
     assert said.code == 0
-    assert said.out.startswith("Not finished: 6 of 6 lives are still to be lived")
+    assert said.out.startswith("Not finished: 6 of 6 lives are still to be simulated")

@@ -74,13 +74,13 @@ def test_a_study_is_lived_told_of_looked_at_and_exported(animat, file, tmp_path)
     part.write_bytes(part.read_bytes()[:-1])
     said = animat("verify", "results/tiny")
     assert (said.code, said.out) == (1, "")
-    assert said.err.splitlines()[-1].startswith(f"animat: {part}: is torn; take it away")
+    assert said.err.splitlines()[-1].startswith(f"animat: {part}: is cut short")
     said = animat("export", "results/tiny", "--to", "csv", "--out", "again.csv")
     assert (said.code, said.out) == (2, "")
-    assert said.err.startswith(f"animat: {part}: is torn; take it away")
+    assert said.err.startswith(f"animat: {part}: is cut short")
     assert not Path("again.csv").exists()
     said = animat("status", "results/tiny")
-    assert any(line.startswith(f"{part}: is torn") for line in said.out.splitlines())
+    assert any(line.startswith(f"{part}: is cut short") for line in said.out.splitlines())
     assert animat("run", "tiny.toml").code == 0
     assert animat("verify", "results/tiny").code == 0
 

@@ -7,14 +7,14 @@ import pytest
 
 from animat.experiments import judging as module
 from animat.experiments.judging import judge
-from animat.files.checksummed_table import seal_of, sealed
 from animat.files.settings import validated
-from animat.statistics.claims import judge_learning, judge_lifespans
+from animat.statistics import paper_claims
+from animat.statistics.claims import CELLS, CLAIMS, EFFECTS
 from animat.statistics.lives import column
-from animat.statistics.universes import CELLS, CLAIMS, EFFECTS
 from animat.study.execute.run import run, threads
 from animat.study.file.study import Study
 from animat.study.plan.plan import Plan
+from animat.study.plan.shard import shard_file, shard_header
 from animat.study.store.results import open as open_results
 
 
@@ -50,8 +50,6 @@ def test_every_universe_is_judged_by_its_own_lives_and_teachers(plan, results, j
             cells.append(rows)
             spans = column(rows, "lifespan")
             assert row[f"mean_{world}_{agent}"] == pytest.approx(spans.mean())
-        for claim in judge_lifespans(pa.concat_tables(cells), resamples=99):
-            assert row[claim.id] == claim.verdict
         taught = plan.classes[plan.class_of(plan.lived.index(plan.cases[cases[1]]))]
         rows = teachers.filter(pc.field("identity") == taught.identity).to_pylist()
         told = [
@@ -62,9 +60,11 @@ def test_every_universe_is_judged_by_its_own_lives_and_teachers(plan, results, j
             for thing, afforded in (("TS", network == "eat"), ("CS", network == "eat"),
                                     ("TL", network == "shelter"), ("CL", network == "shelter"))
         ]  # fmt: skip
-        learning = judge_learning(pa.Table.from_pylist(told), resamples=99)
-        assert row["learning_error"] == pytest.approx(learning.ours)
-        assert row["C7"] == learning.verdict
+        claims = paper_claims.judge(
+            pa.concat_tables(cells), pa.Table.from_pylist(told), resamples=99
+        )
+        assert row["learning_error"] == pytest.approx(claims[-1].ours)
+        assert {name: row[name] for name in CLAIMS} == {one.id: one.verdict for one in claims}
 
 
 def test_the_table_has_the_readings_then_what_is_told(judged):
@@ -111,13 +111,12 @@ def fail_one(folder, place):
 
 
 def with_errors(file, errors):
-    """Write a part anew, sealed, with these errors, and return the rows it had."""
-    rows, seal = pq.read_table(file), seal_of(file)
-    assert seal is not None
+    """Write a part anew, with these errors, and return the rows it had."""
+    rows, said = pq.read_table(file), shard_header(file)
     place = rows.schema.get_field_index("error")
     failed = rows.set_column(place, "error", pa.array(errors, pa.string()))
     how_many = sum(error is not None for error in errors)
-    file.write_bytes(sealed([failed], rows.schema, seal.identity, seal.steps, failed=how_many))
+    file.write_bytes(shard_file([failed], rows.schema, said.identity, said.steps, how_many))
     return rows
 
 

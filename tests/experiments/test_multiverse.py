@@ -12,10 +12,10 @@ from animat.experiments.multiverse import (
     run_multiverse,
 )
 from animat.files.settings import SettingsError
+from animat.statistics.claims import CLAIMS
 from animat.statistics.estimates import share
 from animat.statistics.lives import column
-from animat.statistics.sufficient_sets import Condition, SmallestSet
-from animat.statistics.universes import CLAIMS
+from animat.statistics.sufficient_sets import Condition, SufficientSet
 from animat.study.execute.run import threads
 from animat.study.store.results import open as open_results
 
@@ -38,9 +38,9 @@ def test_everything_asked_for_is_found(lived, small):
     assert sum(rule.count for rule in found.left_out) / 4 + total == small.design.sample.points
     assert found.shares.num_rows == 3 * len(CLAIMS)
     assert set(found.found) == set(CLAIMS)
-    assert found.foretold is not None
-    assert found.cap is not None
-    assert column(found.cap, "universes").tolist() == [len_of(lived, "longer")] * 11
+    assert found.predicted is not None
+    assert found.time_limit is not None
+    assert column(found.time_limit, "universes").tolist() == [len_of(lived, "longer")] * 11
     assert found.fewest_together >= 1
 
 
@@ -106,9 +106,9 @@ def test_a_set_that_is_found_is_confirmed_by_fresh_universes(small, tmp_path, mo
     def found_by_hand(universes, readings, claim):
         if claim not in {"C1", "C6"}:
             return None
-        return SmallestSet(claim, conditions, 40, share(39, 40))
+        return SufficientSet(claim, conditions, 40, share(39, 40))
 
-    monkeypatch.setattr(module, "smallest_set", found_by_hand)
+    monkeypatch.setattr(module, "sufficient_set", found_by_hand)
     found = go(small, tmp_path, Size(confirming=4, longer=0))
     assert set(found.confirmed) == {"C1", "C6"}
     # Both claims have one set, so they share its universes.
@@ -131,9 +131,9 @@ def test_where_another_set_is_found_later_it_is_confirmed_beside_the_first(
         conditions = (Condition("overflow", (value,)),)
 
         def by_hand(universes, readings, claim, conditions=conditions):
-            return SmallestSet(claim, conditions, 40, share(39, 40)) if claim == "C1" else None
+            return SufficientSet(claim, conditions, 40, share(39, 40)) if claim == "C1" else None
 
-        monkeypatch.setattr(module, "smallest_set", by_hand)
+        monkeypatch.setattr(module, "sufficient_set", by_hand)
         found = go(small, directory, Size(confirming=4, longer=0))
         assert found.confirmed["C1"].found.conditions == conditions
         assert {path.name for path in (directory / "confirmation").iterdir()} == there
@@ -156,7 +156,7 @@ def test_the_full_product_is_lived_in_portions(small, tmp_path, monkeypatch):
     assert column(found.table, "universe").tolist() == list(range(12))
     assert column(found.deaths, "lives").sum() == 12 * 4 * 3
     assert len(list(tmp_path.glob("universes-*"))) == 4
-    assert found.cap is None
+    assert found.time_limit is None
 
 
 def test_a_study_without_a_sample_is_refused(small, tmp_path):
@@ -178,8 +178,8 @@ def test_where_only_universes_beside_them_failed_the_others_are_told_of(
 ):
     directory = tmp_path / "again"
     shutil.copytree(lived.directory, directory)
-    one = SmallestSet("C1", (), 40, share(39, 40))
-    monkeypatch.setattr(module, "smallest_set", lambda *_: one)
+    one = SufficientSet("C1", (), 40, share(39, 40))
+    monkeypatch.setattr(module, "sufficient_set", lambda *_: one)
     whole = module.judge
 
     def judge(plan, results, readings, **settings):
@@ -191,7 +191,7 @@ def test_where_only_universes_beside_them_failed_the_others_are_told_of(
     monkeypatch.setattr(module, "judge", judge)
     found = go(small, directory, Size(confirming=4, longer=4, late=1_200))
     assert found.table.equals(lived.found.table)
-    assert (found.cap, found.confirmed) == (None, {})
+    assert (found.time_limit, found.confirmed) == (None, {})
 
 
 def test_the_tables_are_those_of_the_store(lived):

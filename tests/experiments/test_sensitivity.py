@@ -74,7 +74,7 @@ def test_the_indices_are_those_of_the_mean_lifespans(lived):
     assert found.indices.to_pandas().equals(expected.to_pandas())
     within = lives[lives.case < half].groupby("case").lifespan.var(ddof=1) / 4
     noise = (within / means[:half] ** 2).mean() / np.log(means[:half]).var(ddof=0)
-    assert found.luck["BLIND"] == pytest.approx(noise)
+    assert found.noise["BLIND"] == pytest.approx(noise)
 
 
 def made_up(study, lifespan):
@@ -96,7 +96,7 @@ def made_up(study, lifespan):
     )
 
 
-def test_a_planted_parameter_explains_all_and_nothing_is_luck(small):
+def test_a_planted_parameter_explains_all_and_nothing_is_random(small):
     study = with_points(small, 128)
     found = sensitivity(
         made_up(study, lambda point: 1_000.0 * np.exp(3.0 * point["mind.success_effect"]))
@@ -104,10 +104,10 @@ def test_a_planted_parameter_explains_all_and_nothing_is_luck(small):
     for row in found.indices.to_pylist():
         expected = 1.0 if row["parameter"] == "success effect" else 0.0
         assert row["index"] == pytest.approx(expected, abs=0.2)
-    assert found.luck == {"BLIND": 0.0, "AF": 0.0}
+    assert found.noise == {"BLIND": 0.0, "AF": 0.0}
     blind, af = short(found, most=1)
     assert blind.startswith("BLIND: success effect ")
-    assert af.endswith("luck 0%")
+    assert af.endswith("0% of the variance is random")
 
 
 def test_points_whose_lives_failed_are_told_of(small):
@@ -142,6 +142,6 @@ def test_the_page_has_the_indices_and_the_ranges(lived, tmp_path):
     text = (tmp_path / "sensitivity.html").read_text("utf-8")
     assert "restlessness rate" in text
     assert "by its logarithm" in text
-    assert "is itself in part luck" in text
+    assert "is itself in part random" in text
     assert (tmp_path / "indices.csv").exists()
     assert (tmp_path / "sobol.svg").exists()

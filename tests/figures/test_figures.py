@@ -12,16 +12,19 @@ from matplotlib.text import Text
 
 from animat.figures import style
 from animat.figures.causes import causes_figure
+from animat.figures.factor_effects import factor_effects_figure, trend_figure
 from animat.figures.interaction import InteractionLine, interaction_figure
-from animat.figures.learning import learning_figure
-from animat.figures.learning_curve import learning_curve_figure
+from animat.figures.learning import learning_curve_figure, learning_figure
 from animat.figures.life import life_figure
-from animat.figures.lifespans import Bar, Panel, lifespans_figure
-from animat.figures.margins import margins_figure
 from animat.figures.networks import SURFACE, networks_figure
 from animat.figures.ratio import Mark, ratio_figure
-from animat.figures.survival import level_curves_figure, survival_figure
-from animat.figures.trend import trend_figure
+from animat.figures.survival import (
+    Bar,
+    Panel,
+    level_curves_figure,
+    lifespans_figure,
+    survival_figure,
+)
 from animat.figures.worlds import worlds_figure
 from animat.statistics import survival
 from animat.statistics.estimates import Estimate, share
@@ -60,7 +63,7 @@ def drawings(trace, learning, ratios, world, robot, lives_table):
             },
             ordered=True,
         ),
-        "margins": lambda: margins_figure(
+        "factor_effects": lambda: factor_effects_figure(
             {
                 "mind.variables.nutrition.rate": {"0.0001": bars[0].mean, "0.001": bars[1].mean},
                 "agent": {
@@ -115,7 +118,7 @@ def drawings(trace, learning, ratios, world, robot, lives_table):
 
 NAMES = (
     "worlds", "learning", "lifespans", "learning_curve", "survival", "survival_log",
-    "survival_levels", "margins", "interaction", "interaction_words", "trend", "causes",
+    "survival_levels", "factor_effects", "interaction", "interaction_words", "trend", "causes",
     "life", "life_alone", "ratio", "networks", "networks_of_many",
 )  # fmt: skip
 
@@ -177,8 +180,8 @@ def hidden_ticks(fig):
 
 def test_no_figure_needs_pyplot():
     modules = (
-        "causes columns learning learning_curve life lifespans marginal margins ratio sobol"
-        " specification style survival trend verdicts worlds"
+        "causes columns factor_effects learning life marginal ratio sobol specification style"
+        " survival verdicts worlds"
     )
     code = "; ".join(f"import animat.figures.{name}" for name in modules.split())
     code += "; import sys; sys.exit('matplotlib.pyplot' in sys.modules)"

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from animat.files.atomic import RunError
-from animat.files.checksummed import TEXT, sealing
+from animat.files.checksummed import TEXT, writing
 from animat.files.settings import SettingsError
 from animat.life.engine import ENGINE
 from animat.life.life import Moment, birth, live, lived
@@ -180,10 +180,10 @@ def known(small, tmp_path_factory):
 
 
 def forged(known: Recording, change=None, **head: Any) -> Recording:
-    """Return a recording that was changed and sealed again: `change` gets and returns its rows."""
+    """Return a recording that was changed and written again: `change` gets and returns its rows."""
     path = known.path.with_name("forged.parquet")
     parts = [known.file.read_row_group(group) for group in range(known.file.num_row_groups)]
-    with sealing(path, parts[0].schema) as file:
+    with path.open("wb+") as out, writing(out, parts[0].schema) as file:
         for part in parts:
             rows = part.to_pylist()
             told = rows if change is None else change(rows)
@@ -345,11 +345,11 @@ def test_a_file_that_is_cut_short_is_refused(known, data):
 def test_a_trace_is_no_recording(small, tmp_path):
     trace = live(Mind(), small, steps=20, record="all").trace
     pq.write_table(trace, tmp_path / "t.parquet")
-    with pytest.raises(SettingsError, match=r"t\.parquet: has no seal of a recording"):
+    with pytest.raises(SettingsError, match=r"t\.parquet: has no checksum"):
         Recording.load(tmp_path / "t.parquet")
 
 
-def test_a_sealed_file_of_something_else_is_refused(known):
+def test_a_checksummed_file_of_something_else_is_refused(known):
     def why(change=None, **head) -> str:
         with pytest.raises(SettingsError) as caught:
             forged(known, change, **head).at(0)
@@ -386,14 +386,14 @@ def test_the_columns_must_be_those_of_the_life(known, tmp_path):
     part = known.file.read_row_group(0).drop_columns(["x"])
     path = tmp_path / "a.parquet"
     head = {**json.loads(known.head.json_text()), "last": part.num_rows}
-    with sealing(path, part.schema) as file:
+    with path.open("wb+") as out, writing(out, part.schema) as file:
         file.write(part, "some")
         file.close(json.dumps(head))
     with pytest.raises(LifeError, match="its columns are not those of its life"):
         Recording.load(path).verify()
     assert TEXT.encode() in pq.read_metadata(path).metadata
     part = part.drop_columns(list(KEPT))
-    with sealing(path, part.schema) as file:
+    with path.open("wb+") as out, writing(out, part.schema) as file:
         file.write(part, "some")
         file.close(json.dumps(head))
     with pytest.raises(SettingsError, match="its steps are not those its head tells of"):

@@ -3,7 +3,7 @@
 import hashlib
 import json
 
-from animat.report.inputs import LARGEST, inputs_sections
+from animat.report.inputs import LARGEST, inputs_of
 
 MANIFEST = {
     "study": "s", "hash": "0", "engine": 1, "steps_to_learn": 0,
@@ -27,15 +27,14 @@ def test_each_file_is_told_with_its_digest_and_its_text(tmp_path):
     law = b"def law(value, low, high, rate, factor):\n    return value <= high\n"
     results(tmp_path / "experiment1", law=law)
     results(tmp_path / "experiment2", bytes=b"\xff\xfe", large=b"#" * (LARGEST + 1), gone=None)
-    (section,) = inputs_sections(tmp_path)
-    assert section.terms is not None
-    assert section.terms["mine/law.py"] == f"SHA-256 {hashlib.sha256(law).hexdigest()}"
-    assert section.terms["mine/bytes.py"].startswith("SHA-256 ")
-    assert section.terms["mine/large.py"].startswith("SHA-256 ")
-    assert "missing" in section.terms["mine/gone.py"]
-    assert section.code == "# mine/law.py\n\n" + law.decode()
+    files = inputs_of(tmp_path)
+    assert files.digests["mine/law.py"] == f"SHA-256 {hashlib.sha256(law).hexdigest()}"
+    assert files.digests["mine/bytes.py"].startswith("SHA-256 ")
+    assert files.digests["mine/large.py"].startswith("SHA-256 ")
+    assert "missing" in files.digests["mine/gone.py"]
+    assert files.text == "# mine/law.py\n\n" + law.decode()
 
 
 def test_a_study_that_names_no_file_has_no_such_part(tmp_path):
     results(tmp_path)
-    assert inputs_sections(tmp_path) == []
+    assert inputs_of(tmp_path) == ({}, "")

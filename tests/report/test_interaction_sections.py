@@ -4,8 +4,7 @@ import pytest
 from animat.report import interaction_sections as two_factor_sections
 from animat.report.interaction_sections import interaction_sections, interactions_in_short
 from animat.report.page import p_value
-from animat.statistics.findings import find
-from animat.statistics.multiple import holm
+from animat.statistics.findings import find, holm
 
 from ..statistics.designs import crossed, lived
 

@@ -1,7 +1,6 @@
 import base64
 from html.parser import HTMLParser
 
-import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
@@ -11,18 +10,14 @@ from animat.report.page import (
     Picture,
     Section,
     TableBlock,
-    cells_section,
-    claims_section,
+    address_of,
     interval,
     is_page,
     p_value,
     picture,
-    picture_file,
     write_page,
 )
-from animat.statistics.claims import judge
 from animat.statistics.estimates import UNKNOWN, Estimate
-from animat.statistics.survival import summarise
 
 
 class Reader(HTMLParser):
@@ -66,14 +61,10 @@ def figure():
 
 
 @pytest.fixture
-def whole(tmp_path, lives_table, likelihoods_table, figure):
-    rng = np.random.default_rng(1)
-    cells = [(world, agent) for world in ("abundant", "scarce") for agent in ("BLIND", "AF")]
-    table = lives_table({cell: rng.exponential(900, 60) + 1 for cell in cells}, cap=2000)
+def whole(tmp_path, figure):
     path = tmp_path / "report.html"
     sections = [
-        claims_section(judge(table, likelihoods_table(40), resamples=99)),
-        cells_section(summarise(table, resamples=99)),
+        Section("A table", tables=[TableBlock(("", "a"), [("b", "2.0")], "below")]),
         Section("Figures", pictures=[picture(figure, "Figure 1. A line.", "a line")]),
         Section(
             "How it was made",
@@ -83,7 +74,7 @@ def whole(tmp_path, lives_table, likelihoods_table, figure):
             code="animat reproduce",
         ),
     ]
-    write_page(path, "A report", sections, lead=["What was asked."])
+    write_page(path, title="A report", sections=sections, lead=["What was asked."])
     return path
 
 
@@ -102,23 +93,22 @@ def test_the_contents_lead_to_every_section(whole):
     reader = read(whole)
     there = {given["id"] for tag, given in reader.tags if tag == "section"}
     assert [link for link in reader.links if link.startswith("#")] == [
-        f"#part-{k}" for k in (1, 2, 3, 4)
+        f"#part-{k}" for k in (1, 2, 3)
     ]
     assert {link[1:] for link in reader.links} == there
 
 
 def test_everything_that_is_given_is_on_the_page(whole):
     text = " ".join(read(whole).text)
-    for word in ("A report", "What was asked.", "C1", "C7", "abundant, BLIND", "Figure 1. A line.",
-                 "Once.", "calibrated: nothing", "animat reproduce", "Cañamero", "2003",
-                 "eat TS", "nutrition too low, metabolism", "alive at the cap"):  # fmt: skip
+    for word in ("A report", "What was asked.", "Figure 1. A line.", "Once.", "below", "seed",
+                 "calibrated: nothing", "animat reproduce", "Cañamero", "2003"):  # fmt: skip
         assert word in text
 
 
 def test_verdicts_are_marked_as_what_they_are(tmp_path):
     path = tmp_path / "page.html"
-    rows = [(Badge("holds"),), (Badge("fails"),), (Badge("undecided"),)]
-    write_page(path, "t", [Section("s", tables=[TableBlock(("v",), rows)])])
+    rows = [(Badge("holds"),), (Badge("fails"),), (Badge("undecided"),), ("holds",)]
+    write_page(path, title="t", sections=[Section("s", tables=[TableBlock(("v",), rows)])])
     badges = [given["class"] for tag, given in read(path).tags if tag == "span"]
     assert badges == ["badge holds", "badge fails", "badge undecided"]
 
@@ -127,7 +117,7 @@ def test_warnings_come_first_and_a_table_has_its_title(tmp_path):
     path = tmp_path / "page.html"
     table = TableBlock(("a",), [("b",)], title="Its title")
     section = Section("s", ["said"], tables=[table], notices=["Not finished."])
-    write_page(path, "t", [section], lead=["lead"], notices=["Still running."])
+    write_page(path, title="t", sections=[section], lead=["lead"], notices=["Still running."])
     reader = read(path)
     text = [each.strip() for each in reader.text if each.strip()]
     assert text.index("Still running.") < text.index("lead") < text.index("Not finished.")
@@ -153,7 +143,7 @@ def test_what_a_user_wrote_cannot_become_markup(tmp_path):
     section = Section(evil, (evil,), (evil,), {evil: evil},
                       (TableBlock((evil,), ((evil,),), evil),),
                       (Picture("png", b"x", evil, evil),), evil)  # fmt: skip
-    write_page(path, evil, [section], lead=[evil])
+    write_page(path, title=evil, sections=[section], lead=[evil])
     reader = read(path)
     assert "script" not in {tag for tag, _ in reader.tags}
     assert "".join(reader.text).count("<script>") == 14
@@ -166,7 +156,7 @@ def test_a_picture_holds_the_figure(figure, tmp_path):
     assert base64.b64decode(content) == made.content
     assert b"<svg" in made.content
     (tmp_path / "f.png").write_bytes(b"png")
-    assert picture_file(tmp_path / "f.png", "c", "a").address == "data:image/png;base64,cG5n"
+    assert address_of(tmp_path / "f.png") == "data:image/png;base64,cG5n"
 
 
 def test_a_heavy_figure_goes_in_as_png(figure, monkeypatch):
@@ -193,5 +183,6 @@ def test_p_values_in_words():
 
 def test_the_same_content_gives_the_same_page(whole, tmp_path, figure):
     for name in ("one", "two"):
-        write_page(tmp_path / name, "t", [Section("s", pictures=[picture(figure, "c", "a")])])
+        sections = [Section("s", pictures=[picture(figure, "c", "a")])]
+        write_page(tmp_path / name, title="t", sections=sections)
     assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()

@@ -26,7 +26,7 @@ def test_versions_machine_command_and_hash_are_told(results):
     assert f"numpy {run['versions']['numpy']}" in terms["Versions"]
     assert run["machine"]["processor"] in terms["Machine"]
     assert terms["Begun"] == run["made"]
-    assert "Gone on with" not in terms
+    assert "Resumed" not in terms
     assert notices(results.progress, NONE) == []
 
 
@@ -38,7 +38,7 @@ def test_runs_on_other_machines_are_told_apart(results, monkeypatch):
     assert "processor another (2030-01-01T00:00:00+00:00)" in terms["Machine"]
     assert f"({run['made']})" in terms["Machine"]
     assert terms["Command"] == run["command"]
-    assert terms["Gone on with"] == later["made"]
+    assert terms["Resumed"] == later["made"]
 
 
 def test_a_study_that_still_runs_is_told_loudly(copied):
@@ -48,7 +48,9 @@ def test_a_study_that_still_runs_is_told_loudly(copied):
     section = how_run_section(results, results.progress, NONE)
     assert section.terms["Lives"] == f"{done} of 100 finished"
     (notice,) = section.notices
-    assert notice.startswith(f"Not finished: {total - done} of 100 lives are still to be lived.")
+    assert notice.startswith(
+        f"Not finished: {total - done} of 100 lives are still to be simulated."
+    )
 
 
 def test_errors_are_told_once_with_their_first_life(results):

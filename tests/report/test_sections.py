@@ -148,5 +148,7 @@ def test_what_cannot_be_told_apart_is_said_loudly():
 def test_lives_one_to_a_case_make_a_page(tmp_path):
     cases = crossed(agent=["BLIND", "AF"], world=["rich", "poor"])
     found = find(lived([(one, 300.0) for one in cases], 1), ["agent", "world"], resamples=99)
-    write_page(tmp_path / "page.html", "t", result_sections(found), lead=in_short(found))
+    write_page(
+        tmp_path / "page.html", title="t", sections=result_sections(found), lead=in_short(found)
+    )
     assert "BLIND" in (tmp_path / "page.html").read_text("utf-8")

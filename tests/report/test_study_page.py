@@ -2,11 +2,14 @@
 
 import re
 from html.parser import HTMLParser
+from pathlib import Path
 
+import numpy as np
+import pyarrow as pa
 import pytest
 
 from animat.files.settings import SettingsError
-from animat.report.study_page import NOTHING_YET, write_report
+from animat.report.study_page import NOTHING_YET, bibtex, learnt_section, write_report
 
 from .small import FAILING, ran
 
@@ -177,3 +180,77 @@ agent = "LEARNING"
     assert "What the networks learnt" in page.headings
     assert "mind.learning.cycles = 10" in page.text
     assert "eat TS" in page.text
+
+
+TEACHERS = pa.table(
+    {
+        "identity": ["a", "a"],
+        "robot": [0, 1],
+        "likelihood_eat_TS": [0.75, 0.25],
+        "likelihood_turn_round_big_one": [1.0, 1.0],
+        "likelihood_eat_none": pa.array([None, None], pa.float64()),
+    }
+)
+
+
+@pytest.fixture
+def curve():
+    rows = [
+        {"seed": seed, "episode": episode, "network": "eat", "object": "TS",
+         "likelihood": float(np.exp(-episode / 9))}
+        for seed in range(3) for episode in range(20)
+    ]  # fmt: skip
+    return pa.Table.from_pylist(rows)
+
+
+def test_robots_that_taught_are_told_network_by_network():
+    (table,) = learnt_section(TEACHERS, {}).tables
+    assert table.rows[0][0:2] == ("eat", "TS")
+    assert table.rows[0][2].startswith("0.50 (")
+    assert table.rows[1] == ("turn_round_big", "one", "1.00")
+    assert len(table.rows) == 2
+    assert "2 robots" in table.note
+
+
+def test_a_curve_is_drawn_for_each_case_under_its_name(curve):
+    section = learnt_section(None, {"agent = LEARNING": curve})
+    (picture,) = section.pictures
+    assert "agent = LEARNING" in picture.caption
+    assert picture.content.startswith(b"<?xml")
+
+
+def test_without_anything_learnt_there_is_nothing_to_tell():
+    assert learnt_section(TEACHERS.slice(0, 0), {}) is None
+    assert learnt_section(None, {}) is None
+
+
+CFF = (Path(__file__).parents[2] / "CITATION.cff").read_text("utf-8")
+
+
+def plain(text):
+    """A text without what BibTeX needs, on one line."""
+    return " ".join(text.replace(r"{\~n}", "ñ").replace("{", "").replace("}", "").split())
+
+
+def test_it_says_what_citation_cff_says():
+    (version,) = re.findall(r"^version: (.*)$", CFF, re.M)
+    cited = plain(bibtex(version))
+    (title,) = re.findall(r'^title: "(.*)"$', CFF, re.M)
+    (author,) = re.findall(r"^  - name: (.*)$", CFF, re.M)
+    (licence,) = re.findall(r"^license: (.*)$", CFF, re.M)
+    for value in (title, author, licence, version):
+        assert f"= {value}" in cited
+    (paper,) = re.findall(r"^    title: >-\n((?:      .*\n)+)", CFF, re.M)
+    assert f"title = {plain(paper)}," in cited
+    family = re.findall(r"family-names: (.*)", CFF)
+    given = re.findall(r"given-names: (.*)", CFF)
+    names = " and ".join(f"{f}, {g}" for f, g in zip(family, given, strict=True))
+    assert f"author = {names}," in cited
+    (year,) = re.findall(r"^    year: (.*)$", CFF, re.M)
+    assert f"year = {year}" in cited
+
+
+def test_braces_are_closed():
+    cited = bibtex("1.2.3")
+    assert cited.count("{") == cited.count("}")
+    assert "version = {1.2.3}" in cited

@@ -8,7 +8,8 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from animat.statistics.universes import CELLS, judge_universes
+from animat.statistics.claims import CELLS
+from animat.statistics.universes import judge_universes
 
 READINGS = {
     "physiology": ("excess", "decay", "linear"),

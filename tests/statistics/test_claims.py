@@ -2,26 +2,20 @@ import json
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 import pytest
 
-from animat.statistics.claims import (
-    ABUNDANT_GAIN,
-    SCARCE_GAIN,
-    Claim,
-    above,
-    claims_json,
-    inside,
-    judge,
-    judge_learning,
-    judge_lifespans,
-)
+from animat.statistics.claims import ABUNDANT_GAIN, CELLS, SCARCE_GAIN, above, inside
 from animat.statistics.estimates import Estimate
+from animat.statistics.paper_claims import Claim, claims_json, judge
+
+from .tables import make_likelihoods, make_lives
 
 
 def lives(lives_table, means, n=400, spread=0.5, seed=1, **settings):
     """Four cells with exactly the mean lifespans given: rich blind, rich af, poor blind, poor af.
 
-    Lives are independent (not paired) unless `shift` says otherwise.
+    Lives of one number are independent of each other.
     """
     names = [("abundant", "BLIND"), ("abundant", "AF"), ("scarce", "BLIND"), ("scarce", "AF")]
     rng = np.random.default_rng(seed)
@@ -29,11 +23,22 @@ def lives(lives_table, means, n=400, spread=0.5, seed=1, **settings):
     for name, mean in zip(names, means, strict=True):
         drawn = rng.gamma(1 / spread**2, size=n)
         planted[name] = np.rint(1e6 * mean * drawn / drawn.mean())
-    return lives_table(planted, **{"shift": 10_000, **settings})
+    return lives_table(planted, **settings)
+
+
+def judged(table, **settings):
+    """The claims C1 to C6."""
+    return judge(table, make_likelihoods(2), **settings)[:6]
+
+
+def learning(likelihoods):
+    """The claim C7."""
+    lives = make_lives({cell: [10, 20] for cell in CELLS})
+    return judge(lives, likelihoods, resamples=3_999)[6]
 
 
 def verdicts(table):
-    return {claim.id: claim.verdict for claim in judge_lifespans(table, resamples=999)}
+    return {claim.id: claim.verdict for claim in judged(table, resamples=999)}
 
 
 @pytest.mark.parametrize(
@@ -123,7 +128,7 @@ def test_with_few_lives_the_same_means_leave_a_claim_open(lives_table):
 
 
 def test_the_worlds_are_compared_for_both_agents_and_the_worse_decides(lives_table):
-    claim = judge_lifespans(lives(lives_table, [3, 1, 1, 1.5]), resamples=999)[2]
+    claim = judged(lives(lives_table, [3, 1, 1, 1.5]), resamples=999)[2]
     assert [(part.label, part.verdict) for part in claim.parts] == [
         ("BLIND", "holds"),
         ("AF", "fails"),
@@ -134,43 +139,40 @@ def test_the_worlds_are_compared_for_both_agents_and_the_worse_decides(lives_tab
 
 
 def test_of_two_agents_for_whom_it_holds_the_less_sure_one_is_shown(lives_table):
-    claim = judge_lifespans(lives(lives_table, [1.5, 3, 1, 1]), resamples=999)[2]
+    claim = judged(lives(lives_table, [1.5, 3, 1, 1]), resamples=999)[2]
     assert claim.verdict == "holds"
     assert claim.ours == pytest.approx(1.5, rel=1e-5)
 
 
-def test_how_says_whether_luck_was_shared_and_what_was_cut(lives_table):
-    apart = judge_lifespans(lives(lives_table, [2, 4, 1, 1.5], n=50), resamples=99)
-    together = judge_lifespans(lives(lives_table, [2, 4, 1, 1.5], n=50, shift=0), resamples=99)
-    assert all(" unpaired bootstrap" in claim.how for claim in (apart[0], apart[5]))
-    assert all(" paired bootstrap" in claim.how for claim in (together[0], together[5]))
-    assert "restricted" not in apart[0].how
-    cut = judge_lifespans(lives(lives_table, [2, 4, 1, 1.5], n=50, cap=5_000_000), resamples=99)
-    assert "restricted at 5,000,000 steps" in cut[0].how
+def test_how_says_what_was_cut(lives_table):
+    whole = judged(lives(lives_table, [2, 4, 1, 1.5], n=50), resamples=99)
+    assert "restricted" not in whole[0].how
+    cut = judged(lives(lives_table, [2, 4, 1, 1.5], n=50, cap=5_000_000), resamples=99)
+    assert "paired bootstrap over lives, means restricted at 5,000,000 steps" in cut[0].how
     assert "of 100 lives went on" in cut[0].how
+    assert "of 200 lives went on" in cut[5].how
+
+
+def test_a_life_that_is_missing_in_a_cell_is_left_out_in_all(lives_table):
+    table = lives(lives_table, [2, 4, 1, 1.5], n=50)
+    some = table.slice(3)
+    without = table.filter(pc.field("life") >= 3)
+    assert judged(some, resamples=99) == judged(without, resamples=99)
+    with pytest.raises(ValueError, match="four cells"):
+        judged(table.slice(50))
 
 
 def test_verdicts_and_intervals_are_the_same_again(lives_table):
     table = lives(lives_table, [2, 3, 1, 1.2], n=60)
-    once = judge_lifespans(table, resamples=499, seed=5)
-    assert once == judge_lifespans(table, resamples=499, seed=5)
-    assert once != judge_lifespans(table, resamples=499, seed=6)
+    once = judged(table, resamples=499, seed=5)
+    assert once == judged(table, resamples=499, seed=5)
+    assert once != judged(table, resamples=499, seed=6)
 
 
 def test_the_order_of_the_rows_does_not_matter_to_paired_lives(lives_table):
-    table = lives(lives_table, [2, 3, 1, 1.2], n=60, shift=0)
+    table = lives(lives_table, [2, 3, 1, 1.2], n=60)
     shuffled = table.take(pa.array(np.random.default_rng(1).permutation(table.num_rows)))
-    assert judge_lifespans(table, resamples=99) == judge_lifespans(shuffled, resamples=99)
-
-
-def test_the_cells_may_have_other_names(lives_table):
-    table = lives(lives_table, [2, 4, 1, 1.5], n=100)
-    agents = ["ORACLE" if a == "AF" else a for a in table.column("agent").to_pylist()]
-    renamed = table.set_column(1, "agent", pa.array(agents))
-    claims = judge_lifespans(renamed, informed="ORACLE", resamples=99)
-    assert claims[0].text == "ORACLE outlives BLIND in the abundant world"
-    with pytest.raises(ValueError, match="agent = AF"):
-        judge_lifespans(renamed)
+    assert judged(table, resamples=99) == judged(shuffled, resamples=99)
 
 
 @pytest.mark.parametrize(
@@ -178,7 +180,7 @@ def test_the_cells_may_have_other_names(lives_table):
     [(100, 0, "holds"), (100, 3, "holds"), (100, 12, "undecided"), (100, 60, "fails")],
 )
 def test_learning_is_judged_by_the_worst_mean_likelihood(likelihoods_table, seeds, wrong, expected):
-    claim = judge_learning(likelihoods_table(seeds, wrong, ("eat", "TS"), 0.0))
+    claim = learning(likelihoods_table(seeds, wrong, ("eat", "TS"), 0.0))
     assert claim.verdict == expected
     assert claim.ours == pytest.approx(0.05 + 0.95 * wrong / seeds)
     assert claim.low <= claim.ours <= claim.high
@@ -198,7 +200,7 @@ def test_learning_is_judged_by_the_worst_mean_likelihood(likelihoods_table, seed
     ],
 )
 def test_every_likelihood_has_its_border(likelihoods_table, flaw, value, verdict):
-    claim = judge_learning(likelihoods_table(10, 10, flaw, value))
+    claim = learning(likelihoods_table(10, 10, flaw, value))
     assert claim.verdict == verdict
     wrong = [part.label for part in claim.parts if part.verdict != "holds"]
     assert wrong == ([] if verdict == "holds" else [" ".join(flaw)])
@@ -209,13 +211,13 @@ def test_interacting_must_be_near_one_whatever_the_table_says(likelihoods_table)
     afforded = [0.0 if (row["network"], row["object"]) == ("interact", "TS") else row["afforded"]
                 for row in table.to_pylist()]  # fmt: skip
     column = table.schema.get_field_index("afforded")
-    claim = judge_learning(table.set_column(column, "afforded", pa.array(afforded)))
+    claim = learning(table.set_column(column, "afforded", pa.array(afforded)))
     assert claim.ours == pytest.approx(0.95)
     assert claim.verdict == "fails"
 
 
 def test_learning_shows_the_mean_of_every_network_and_object(likelihoods_table, paper_table):
-    claim = judge_learning(likelihoods_table(50, 10, ("eat", "TS"), 0.45))
+    claim = learning(likelihoods_table(50, 10, ("eat", "TS"), 0.45))
     parts = {part.label: part for part in claim.parts}
     assert set(parts) == {f"{network} {thing}" for network, thing in paper_table}
     assert parts["eat TS"].ours == pytest.approx(0.85)
@@ -234,7 +236,7 @@ def test_likelihoods_that_lack_something_are_refused(likelihoods_table, fault):
         "none": [],
     }[fault]
     with pytest.raises(ValueError, match=r"one likelihood|empty"):
-        judge_learning(table.take(pa.array(rows, pa.int64())))
+        learning(table.take(pa.array(rows, pa.int64())))
 
 
 def test_json_says_everything_and_has_no_number_that_is_none():
@@ -246,7 +248,7 @@ def test_json_says_everything_and_has_no_number_that_is_none():
 
 
 def test_json_names_the_parts(likelihoods_table):
-    (record,) = json.loads(claims_json([judge_learning(likelihoods_table(20))]))
+    (record,) = json.loads(claims_json([learning(likelihoods_table(20))]))
     first = record["parts"][0]
     assert (first["label"], first["verdict"]) == ("eat TS", "holds")
     assert [first[key] for key in ("ours", "low", "high")] == pytest.approx([0.95] * 3)

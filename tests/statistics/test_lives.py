@@ -2,7 +2,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from animat.statistics.lives import cell, cells, column, first_lives, restricted, restriction
+from animat.statistics.lives import cell, cells, column, first_lives, restriction
 
 A, B = ("abundant", "BLIND"), ("abundant", "AF")
 
@@ -41,34 +41,7 @@ def test_lives_are_restricted_at_the_earliest_step_at_which_one_was_let_go(lives
     other = lives_table({B: [50, 80, 90]}, cap=80)
     assert restriction([one]) == 100
     assert restriction([one, other]) == 80
-    (first, second), paired = restricted([one, other])
-    assert paired
-    assert first.tolist() == [5, 80, 80]
-    assert second.tolist() == [50, 80, 80]
 
 
 def test_lives_that_all_end_are_not_restricted(lives_table):
     assert restriction([lives_table({A: [5, 6]})]) == np.inf
-
-
-def test_pairs_are_put_into_one_order(lives_table):
-    one = lives_table({A: [1, 2, 3]})
-    other = lives_table({B: [10, 20, 30]}).take(pa.array([2, 0, 1]))
-    (first, second), paired = restricted([one, other])
-    assert paired
-    assert (second / first).tolist() == [10, 10, 10]
-
-
-@pytest.mark.parametrize("what", ["other lives", "other seed", "more lives", "twice the same"])
-def test_lives_without_a_partner_are_not_paired(lives_table, what):
-    one = lives_table({A: [1, 2, 3]})
-    other = lives_table({B: [10, 20, 30]})
-    if what == "other lives":
-        other = other.set_column(2, "life", pa.array([1, 2, 3]))
-    elif what == "other seed":
-        other = other.set_column(3, "seed", pa.array([8, 8, 8]))
-    elif what == "more lives":
-        other = lives_table({B: [10, 20, 30, 40]})
-    else:
-        one, other = (t.set_column(2, "life", pa.array([0, 0, 1])) for t in (one, other))
-    assert restricted([one, other])[1] is False

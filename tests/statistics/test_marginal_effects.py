@@ -5,13 +5,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
+from animat.statistics.claims import CLAIMS, EFFECTS
 from animat.statistics.marginal_effects import (
     difference,
     largest_imbalance,
     marginal_effects,
     outcomes,
 )
-from animat.statistics.universes import CLAIMS, EFFECTS
 
 
 @pytest.fixture(scope="module")

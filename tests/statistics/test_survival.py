@@ -8,7 +8,6 @@ from animat.statistics.survival import (
     ALIVE,
     causes,
     kaplan_meier,
-    lifespan_ratio,
     logrank,
     mean_lifespan,
     stability,
@@ -122,23 +121,6 @@ def test_the_mean_is_lifelines_area_under_the_curve(seed):
 def test_a_life_let_go_early_restricts_the_mean_for_all():
     table = spans_table([10, 30, 500], [False, True, False])
     assert mean_lifespan(table).value == pytest.approx((10 + 30 + 30) / 3)
-
-
-def test_a_ratio_uses_shared_luck_only_where_it_is_shared(lives_table):
-    luck = sample(1, n=200, cap=10**9)
-    together = lives_table({A: luck, B: 2 * luck})
-    apart = lives_table({A: luck, B: 2 * luck}, shift=1000)
-    blind, af = together.slice(0, 200), together.slice(200)
-    assert lifespan_ratio(af, blind) == pytest.approx((2.0, 2.0, 2.0))
-    unpaired = lifespan_ratio(apart.slice(200), apart.slice(0, 200))
-    assert unpaired.value == pytest.approx(2.0)
-    assert unpaired.high - unpaired.low > 0.2
-
-
-def test_both_sides_of_a_ratio_are_restricted_at_the_same_step():
-    one = spans_table([100, 100], [True, True])
-    other = spans_table([50, 400], [False, False])
-    assert lifespan_ratio(one, other).value == pytest.approx(100 / 75)
 
 
 def test_causes_are_counted_by_variable_side_and_cause():

@@ -3,9 +3,9 @@ import pyarrow as pa
 import pytest
 from scipy import stats
 
+from animat.statistics.claims import CLAIMS, RATIOS
 from animat.statistics.estimates import share
-from animat.statistics.time_limit import cap_effects
-from animat.statistics.universes import CLAIMS, RATIOS
+from animat.statistics.time_limit import time_limit_effects
 
 
 def universes(numbers, verdict, gain):
@@ -18,7 +18,7 @@ def universes(numbers, verdict, gain):
 def test_the_same_universes_are_compared_in_any_order():
     short = universes([0, 1, 2, 3], ["holds", "undecided", "fails", "holds"], [2.0, 1.5, 0.8, 9.0])
     late = universes([2, 0, 1], ["fails", "fails", "holds"], [0.8, 4.0, 3.3])
-    rows = {row["outcome"]: row for row in cap_effects(short, late).to_pylist()}
+    rows = {row["outcome"]: row for row in time_limit_effects(short, late).to_pylist()}
     assert list(rows) == [*CLAIMS, *RATIOS]
     c1 = rows["C1"]
     assert (c1["universes"], c1["to_holds"], c1["from_holds"]) == (3, 1, 1)
@@ -35,9 +35,9 @@ def test_the_same_universes_are_compared_in_any_order():
 
 def test_what_does_not_change_has_an_interval_of_no_width_and_one_universe_none():
     both = universes([0, 1], ["holds"] * 2, [2.0, 3.0])
-    row = cap_effects(both, both).to_pylist()[-1]
+    row = time_limit_effects(both, both).to_pylist()[-1]
     assert (row["value"], row["low"], row["high"]) == (1.0, 1.0, 1.0)
     one = universes([0], ["holds"], [2.0])
-    row = cap_effects(one, universes([0], ["holds"], [4.0])).to_pylist()[-1]
+    row = time_limit_effects(one, universes([0], ["holds"], [4.0])).to_pylist()[-1]
     assert row["value"] == pytest.approx(2.0)
     assert np.isnan(row["low"])

@@ -2,15 +2,22 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from animat.statistics.claims import ABUNDANT_GAIN, FARTHEST, judge_learning, judge_lifespans
-from animat.statistics.lives import cell, column
-from animat.statistics.universes import (
+from animat.statistics.claims import (
+    ABUNDANT_GAIN,
     CELLS,
     CLAIMS,
+    FARTHEST,
+)
+from animat.statistics.estimates import share
+from animat.statistics.lives import cell, column
+from animat.statistics.paper_claims import judge
+from animat.statistics.universes import (
+    VERDICTS,
     complete,
     deaths,
     holds,
     judge_universes,
+    verdict_shares,
     verdicts_by_value,
 )
 
@@ -42,26 +49,24 @@ def of_universe(table, number):
 
 
 @pytest.mark.parametrize("universe", range(len(MEANS)))
-def test_a_universe_is_judged_as_it_would_be_alone(lives, likelihoods, judged, universe):
-    """The oracle: the claims as a reproduction has them, one universe at a time."""
+def test_a_universe_is_judged_as_a_reproduction_would_be(lives, likelihoods, judged, universe):
     row = judged.to_pylist()[universe]
     assert row["universe"] == universe
-    alone = judge_lifespans(of_universe(lives, universe), resamples=999)
-    for claim in alone:
-        assert row[claim.id] == claim.verdict, claim.id
-    by_id = {claim.id: claim for claim in alone}
+    robots = of_universe(likelihoods, universe).drop_columns("universe")
+    claims = judge(
+        of_universe(lives, universe).drop_columns("universe"),
+        robots.rename_columns({"robot": "seed"}),
+        resamples=999,
+    )
+    by_id = {claim.id: claim for claim in claims}
+    assert {name: row[name] for name in CLAIMS} == {c.id: c.verdict for c in claims}
     pairs = {"abundant_gain": by_id["C1"], "scarce_gain": by_id["C2"]}
     pairs |= {"gain_difference": by_id["C6"]}
     pairs |= dict(zip(("worlds_blind", "worlds_af"), by_id["C3"].parts, strict=True))
     for name, ours in pairs.items():
         told = [row[name], row[f"{name}_low"], row[f"{name}_high"]]
         np.testing.assert_allclose(told, [ours.ours, ours.low, ours.high], rtol=1e-12)
-    robots = of_universe(likelihoods, universe).rename_columns(
-        ["universe", "seed", *likelihoods.column_names[2:]]
-    )
-    learning = judge_learning(robots, resamples=999)
-    assert row["C7"] == learning.verdict
-    assert row["learning_error"] == pytest.approx(learning.ours, rel=1e-12)
+    assert row["learning_error"] == pytest.approx(by_id["C7"].ours, rel=1e-12)
     assert row["learning_error_low"] <= row["learning_error"] <= row["learning_error_high"]
 
 
@@ -201,3 +206,28 @@ def test_of_a_single_life_and_a_single_robot_nothing_is_decided(make_lives, make
     )
     assert {table[claim][0].as_py() for claim in CLAIMS} == {"undecided"}
     assert np.isfinite(table["abundant_gain"][0].as_py())
+
+
+def test_the_shares_of_a_claim_add_up_and_have_wilsons_interval(planted):
+    rows = verdict_shares(planted).to_pylist()
+    assert [(row["claim"], row["verdict"]) for row in rows] == [
+        (claim, verdict) for claim in CLAIMS for verdict in VERDICTS
+    ]
+    for claim in CLAIMS:
+        of_claim = [row for row in rows if row["claim"] == claim]
+        assert sum(row["universes"] for row in of_claim) == planted.num_rows
+        assert sum(row["share_by_value"] for row in of_claim) == pytest.approx(1.0)
+        for row in of_claim:
+            expected = share(row["universes"], planted.num_rows)
+            assert (row["share"], row["low"], row["high"]) == expected
+
+
+def test_a_planted_effect_holds_in_its_share_of_universes(planted):
+    rows = {(row["claim"], row["verdict"]): row for row in verdict_shares(planted).to_pylist()}
+    assert rows["C1", "holds"]["share"] == pytest.approx(0.25, abs=0.03)
+    assert rows["C4", "fails"]["share"] > 0.9
+    assert rows["C7", "holds"]["share"] == 0.5
+    # Where there is no effect, half of the estimates lie on either side of nothing.
+    assert rows["C2", "undecided"]["share"] > 0.85
+    assert rows["C2", "holds"]["share_by_value"] == pytest.approx(0.5, abs=0.15)
+    assert rows["C2", "undecided"]["share_by_value"] == 0.0

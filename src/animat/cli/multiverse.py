@@ -83,7 +83,7 @@ def multiverse(
 def _say_what(asked: Study, directory: Path) -> None:
     from animat.experiments.multiverse_designs import count
     from animat.experiments.universes import readings_of
-    from animat.statistics.universes import CELLS
+    from animat.statistics.claims import CELLS
     from animat.study.file.cases import excluded
 
     print(
@@ -101,13 +101,13 @@ def _print(found: Multiverse) -> None:
     from rich.table import Table
 
     from animat.cli.reproduce import PRINTED_WIDTH
-    from animat.report.multiverse_tables import shares_table, smallest_table
+    from animat.report.multiverse_tables import sets_table, shares_table
 
     console = Console(width=None if sys.stdout.isatty() else PRINTED_WIDTH)
     if found.missing:
         print(f"{found.missing:,} universes are left out: a life or a robot of them failed")
-    for block in (shares_table(found), smallest_table(found)):
+    for block in (shares_table(found), sets_table(found)):
         table = Table(*block.columns)
         for row in block.rows:
-            table.add_row(*(cell if isinstance(cell, str) else cell.verdict for cell in row))
+            table.add_row(*row)
         console.print(table)

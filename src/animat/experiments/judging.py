@@ -11,8 +11,9 @@ import pyarrow.compute as pc
 from numpy.typing import NDArray
 
 from animat.experiments.universes import Reading, Universes, universes_of
+from animat.statistics.claims import CELLS
 from animat.statistics.estimates import RESAMPLES
-from animat.statistics.universes import CELLS, complete, deaths, judge_universes
+from animat.statistics.universes import complete, deaths, judge_universes
 from animat.study.plan.plan import Class, Plan, world_of
 from animat.study.store.results import Results
 
@@ -46,7 +47,7 @@ def judge(
     resamples: int = RESAMPLES,
     tell: Callable[[int], None] = lambda universes: None,
 ) -> Judged:
-    """Judge the universes of a study that was lived, by `readings` as in `universes_of`.
+    """Judge the universes of a study that was simulated, by `readings` as in `universes_of`.
 
     `tell` is called with how many more are.
     """
@@ -104,7 +105,7 @@ def _lives(
 
 
 class _Likelihoods:
-    """What the teachers of every universe say of every object, as `judge_universes` wants it."""
+    """What the training robots of every universe say of every object, for `judge_universes`."""
 
     def __init__(self, plan: Plan, results: Results) -> None:
         self._plan = plan
@@ -157,13 +158,13 @@ class _Likelihoods:
         return self._plan.classes[place]
 
     def _alike(self, cases: NDArray[np.int64]) -> list[tuple[dict[tuple[str, str], float], list]]:
-        """Which rows of `cases` have teachers that met the same types, and what these afford."""
+        """The rows of `cases` whose training robots met the same types, and what these afford."""
         alike: dict[str, list[int]] = {}
         for row, case in enumerate(cases.tolist()):
-            school = self._class_of(case).teacher.world
-            alike.setdefault(school.layout, []).append(row)
-            if school.layout not in self._truths:
-                self._truths[school.layout] = _truth(self._class_of(case))
+            training = self._class_of(case).teacher.world
+            alike.setdefault(training.layout, []).append(row)
+            if training.layout not in self._truths:
+                self._truths[training.layout] = _truth(self._class_of(case))
         return [(self._truths[layout], rows) for layout, rows in alike.items()]
 
 

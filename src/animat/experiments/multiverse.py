@@ -1,4 +1,4 @@
-"""A multiverse lived and analysed, all of it again only where it is not finished.
+"""A multiverse simulated and analysed; a finished part is not simulated again.
 
 Directories of studies stand in the directory of the multiverse: `universes` (or the portions of the
 full product), `longer` (some universes with a late cap), `confirmation` (fresh universes for each
@@ -20,14 +20,14 @@ from animat.experiments.multiverse_designs import fresh, longer, portions
 from animat.experiments.universes import Reading, Universes, readings_of
 from animat.files.settings import SettingsError
 from animat.progress import Telling
+from animat.statistics.claims import CLAIMS
 from animat.statistics.interactions import strongest_interactions
 from animat.statistics.marginal_effects import marginal_effects
-from animat.statistics.predict import Foretold, available, foretell
+from animat.statistics.predict import Prediction, available, predict
 from animat.statistics.readings import codes, fewest_together
-from animat.statistics.shares import verdict_shares
-from animat.statistics.sufficient_sets import Confirmation, SmallestSet, confirm, smallest_set
-from animat.statistics.time_limit import cap_effects
-from animat.statistics.universes import CLAIMS
+from animat.statistics.sufficient_sets import Confirmation, SufficientSet, confirm, sufficient_set
+from animat.statistics.time_limit import time_limit_effects
+from animat.statistics.universes import verdict_shares
 from animat.study.execute.run import Workers, run
 from animat.study.file.cases import Excluded, excluded
 from animat.study.file.study import Study
@@ -52,16 +52,16 @@ class Size(NamedTuple):
 
 
 class InterruptedStudyError(Error):
-    """A run was ended before all lives were finished; the same command goes on with it."""
+    """A run was ended before all lives were finished; the same command resumes it."""
 
 
 class Multiverse(NamedTuple):
     """What was found in the universes of a study.
 
-    Tables are those of `animat.report.multiverse_tables`. `left_out` is how many cases each rule
-    leaves out. `found` has a set for each claim, or None; `confirmed` what fresh universes say of
-    those found, where not all of them failed. `cap` is None where nothing was lived to a late cap,
-    `foretold` where scikit-learn is not installed.
+    `left_out` is how many cases each rule leaves out. `found` has a set for each claim, or None;
+    `confirmed` what fresh universes say of those found, where not all of them failed. `time_limit`
+    is None where nothing was simulated up to a late cap, `predicted` where scikit-learn is not
+    installed.
     """
 
     study: Study
@@ -74,16 +74,16 @@ class Multiverse(NamedTuple):
     shares: pa.Table
     marginal: pa.Table
     interactions: pa.Table
-    foretold: list[Foretold] | None
-    found: dict[str, SmallestSet | None]
+    predicted: list[Prediction] | None
+    found: dict[str, SufficientSet | None]
     confirmed: dict[str, Confirmation]
-    cap: pa.Table | None
+    time_limit: pa.Table | None
 
 
 def run_multiverse(
     study: Study, out: Path, size: Size, workers: Workers, tell: Telling, *, full: bool
 ) -> Multiverse:
-    """Live and analyse a multiverse, `full` in every combination of its readings.
+    """Simulate and analyse a multiverse, `full` in every combination of its readings.
 
     Raises:
         InterruptedStudyError: it was asked to end.
@@ -103,14 +103,14 @@ def run_multiverse(
     tell("Analysis", 0, len(CLAIMS) + 4)
     found = {}
     for claim in CLAIMS:
-        found[claim] = smallest_set(judged.table, names, claim)
+        found[claim] = sufficient_set(judged.table, names, claim)
         tell("Analysis", 1, len(CLAIMS) + 4)
     shares = verdict_shares(judged.table)
     marginal = marginal_effects(judged.table, names)
     tell("Analysis", 1, len(CLAIMS) + 4)
     interactions = strongest_interactions(judged.table, names)
     tell("Analysis", 1, len(CLAIMS) + 4)
-    foretold = foretell(judged.table, names) if available() else None
+    predicted = predict(judged.table, names) if available() else None
     tell("Analysis", 2, len(CLAIMS) + 4)
     return Multiverse(
         study,
@@ -123,7 +123,7 @@ def run_multiverse(
         shares,
         marginal,
         interactions,
-        foretold,
+        predicted,
         found,
         _confirmed(study, found, out, size, workers, tell),
         None if full else _late(study, judged, out, size, workers, tell),
@@ -146,7 +146,7 @@ def _lived(
     workers: Workers,
     tell: Telling,
 ) -> Judged:
-    """Live what a study lacks, and judge its universes."""
+    """Simulate what a study lacks, and judge its universes."""
 
     def tell_stage(task: str, done: int, total: int, note: str = "") -> None:
         tell(f"{stage}, {task[0].lower()}{task[1:]}", done, total, note)
@@ -184,7 +184,7 @@ def _together(parts: list[Judged]) -> Judged:
 
 def _confirmed(
     study: Study,
-    found: dict[str, SmallestSet | None],
+    found: dict[str, SufficientSet | None],
     out: Path,
     size: Size,
     workers: Workers,
@@ -238,4 +238,4 @@ def _late(
         raise AssertionError("a sample does not begin like a larger one of the same seed")
     if not late.table.num_rows:
         return None
-    return cap_effects(judged.table, late.table)
+    return time_limit_effects(judged.table, late.table)

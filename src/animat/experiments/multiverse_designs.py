@@ -1,6 +1,6 @@
 """Studies made from the study of a multiverse: of another size, restricted, in full.
 
-Each is a study like any other, so that it is lived, kept and gone on with in the same way.
+Each is a study like any other, so that it is simulated, stored and resumed in the same way.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from animat.experiments.universes import CELL, label, readings_of, spread_factors
 from animat.files.settings import validated
-from animat.statistics.universes import CELLS
+from animat.statistics.claims import CELLS
 from animat.study.file.axes import axes, combinations, is_whole, left_out
 from animat.study.file.factors import Range
 from animat.study.file.keys import read_key
@@ -27,7 +27,7 @@ GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 """Its multiples lie evenly in [0, 1)."""
 
 FRESH = 1_000_003
-"""Added to the seed of a study, and of its sample, where fresh luck is wanted."""
+"""Added to the seed of a study, and of its sample, where fresh random numbers are wanted."""
 
 
 class Portion(NamedTuple):
@@ -84,7 +84,7 @@ def _points(study: Study) -> int:
 
 
 def fresh(study: Study, allowed: Mapping[str, Sequence[str]], universes: int) -> Study:
-    """Return a study with other points and other luck, in which some readings are restricted.
+    """Return a study with other points and random numbers, in which some readings are restricted.
 
     `allowed` are the labels of the values that a reading may have, by its name.
     """

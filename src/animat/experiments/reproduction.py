@@ -1,7 +1,7 @@
 """The reproduction of the paper: both experiments, and the verdict on every claim.
 
-The experiments are the studies that come with animat, lived into a directory each, so that a
-reproduction that was broken off can be gone on with.
+The experiments are the studies that come with animat, simulated into a directory each, so that a
+reproduction that was interrupted can be resumed.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from animat.files.settings import SettingsError, validated
 from animat.life.life import check as check_life
 from animat.life.scenario import LifeError
 from animat.progress import Telling
-from animat.statistics.claims import Claim, judge
 from animat.statistics.lives import cell, cells, first_lives
+from animat.statistics.paper_claims import Claim, judge
 from animat.statistics.survival import CellSummary, LogRank, logrank, summarise
 from animat.study.execute.run import run, threads
 from animat.study.file.builtin import shipped
@@ -135,7 +135,7 @@ def reproduce(
     anew: bool = False,
     check_functions: bool = False,
 ) -> Reproduction:
-    """Run both experiments into `directory`, or go on with them there, and judge the claims.
+    """Run both experiments into `directory`, or resume them there, and judge the claims.
 
     With `anew`, experiments of other settings that were broken off there are thrown away. With
     `check_functions`, custom functions check every index they use.
@@ -179,7 +179,7 @@ def reproduce(
 def _lived(
     plan: Plan, directory: Path, lenders: list[Results], tell: Telling, anew: bool
 ) -> Results:
-    """Return the results of an experiment, lived into its directory as far as they lack there."""
+    """Return the results of an experiment, simulated as far as its directory lacks them."""
     if (directory / MANIFEST).exists() and (found := differences_from(directory, plan)):
         if not anew:
             raise SettingsError(

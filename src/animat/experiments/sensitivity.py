@@ -18,15 +18,15 @@ AGENT = "mind.agent"
 
 
 class Sensitivity(NamedTuple):
-    """Sobol's indices of each agent, and what share of the variance is luck.
+    """Sobol's indices of each agent, and what share of the variance is random.
 
-    `indices` is of `sobol_table`; `luck` how much of the variance of an agent's mean lifespans
+    `indices` is of `sobol_table`; `noise` how much of the variance of an agent's mean lifespans
     over all points is that of a mean of so few lives.
     """
 
     study: Study
     indices: pa.Table
-    luck: dict[str, float]
+    noise: dict[str, float]
 
 
 def check(study: Study) -> None:
@@ -62,13 +62,13 @@ def sensitivity(results: Results) -> Sensitivity:
     spread = (squares / lives - mean**2) / (lives - 1)
     agents = [str(agent) for agent in study.design.grid[AGENT]]
     logs = np.log(mean).reshape(len(agents), sample.size)
-    of_luck = (spread / mean**2).reshape(len(agents), sample.size)
+    random = (spread / mean**2).reshape(len(agents), sample.size)
     return Sensitivity(
         study,
         sobol_table(dict(zip(agents, logs, strict=True)), [name_of(key) for key in sample.over]),
         {
             agent: float(noise.mean() / values.var()) if np.ptp(values) else 0.0
-            for agent, values, noise in zip(agents, logs, of_luck, strict=True)
+            for agent, values, noise in zip(agents, logs, random, strict=True)
         },
     )
 

@@ -16,8 +16,8 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from animat.files.settings import SettingsError
+from animat.statistics.claims import CELLS
 from animat.statistics.numerals import numeral
-from animat.statistics.universes import CELLS
 from animat.study.file.factors import Range, Scalar
 from animat.study.file.study import Study
 
@@ -76,7 +76,7 @@ def readings_of(study: Study) -> tuple[Reading, ...]:
     if study.teacher is None or not study.paired:
         raise SettingsError(
             f"{study.name}: a multiverse needs a [teacher], and paired = true: AF and BLIND are to"
-            " meet the same luck"
+            " share their random numbers"
         )
     factors = {
         name: tuple(levels)

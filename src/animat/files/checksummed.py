@@ -1,8 +1,8 @@
-"""Sealed Parquet files: written as they come, and refused if a single byte is not as it was.
+"""Checksummed Parquet files: written block by block, refused if a single byte has changed.
 
-Any program that reads Parquet reads them. A text goes with the table; every row group, a block, has
-a digest, so that damage is found and placed; and a seal at the end covers whatever follows the
-blocks. Nothing is parsed before its digest is right.
+Any program that reads Parquet reads them. A text goes with the table. Every row group, a block, has
+a digest, so that damage is found and placed; the footer behind them holds the text, the digests and
+one of itself. Nothing is parsed before its digest is right.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import hashlib
 import json
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, NamedTuple
@@ -23,18 +23,23 @@ from pydantic import TypeAdapter, ValidationError
 from animat.files.settings import SettingsError, opened
 
 MAGIC = b"PAR1"
-"""What a Parquet file begins and ends with."""
+"""What a Parquet file begins and ends with; before the last one stands the length of its footer."""
 
-TEXT, BLOCKS, SEAL = "animat.recording", "animat.blocks", "animat.seal"
+LENGTH = 4
+
+LARGEST = 1 << 24
+"""Bytes of a footer that are looked at."""
+
+TEXT, BLOCKS, CHECKSUM = "animat.text", "animat.blocks", "animat.checksum"
 """The keys of what goes with the table."""
 
-SEALED = re.compile("§ from byte ([0-9]{20}) sha256 ([0-9a-f]{64})".encode())
-OPEN_SEAL = f"§ from byte {{:020d}} sha256 {'0' * 64}"
-"""A seal: where what it covers begins, and its digest, zeros until the file is closed. The text and
-the list of blocks are ASCII, so that neither is taken for it."""
+OPEN = f"§ sha256 {'0' * 64}"
+"""The digest of the footer, zeros while it is taken. Text and blocks are ASCII, unlike this."""
 
-END = 1 << 24
-"""Bytes at the end of a file in which its seal is looked for."""
+CLOSED = re.compile("§ sha256 ([0-9a-f]{64})".encode())
+
+SOUGHT = ("case", "life", "step")
+"""Columns whose least and largest values stand in a file, so that a reader can pass it over."""
 
 PIECE = 1 << 20
 """Bytes that are read at a time."""
@@ -49,7 +54,7 @@ class Block(NamedTuple):
 
 
 class Writer:
-    """Writes the blocks of a sealed file, and its text at the end."""
+    """Writes the blocks of a checksummed file, and its text at the end."""
 
     def __init__(self, sink: _Sink, parquet: pq.ParquetWriter) -> None:
         """Write to a sink by a Parquet writer of its own."""
@@ -65,13 +70,8 @@ class Writer:
     def close(self, text: str) -> None:
         """Write the text, which is ASCII, and nothing after it."""
         assert text.isascii()
-        self._parquet.add_key_value_metadata(
-            {
-                TEXT: text,
-                BLOCKS: json.dumps(self._blocks),
-                SEAL: OPEN_SEAL.format(self._sink.size),
-            }
-        )
+        blocks = json.dumps(self._blocks)
+        self._parquet.add_key_value_metadata({TEXT: text, BLOCKS: blocks, CHECKSUM: OPEN})
         self._parquet.close()
 
 
@@ -100,85 +100,111 @@ class _Sink:
 
     def cut(self) -> str:
         """Return the digest of what came since the last cut."""
-        told = self._digest.hexdigest()
-        self._digest = hashlib.sha256()
-        return told
+        digest, self._digest = self._digest, hashlib.sha256()
+        return digest.hexdigest()
 
 
 @contextmanager
-def sealing(path: Path, schema: pa.Schema) -> Iterator[Writer]:
-    """Yield the writer of a new file; call its `close` at the end. Raises OSError."""
-    with path.open("wb") as file:
-        sink = _Sink(file)
-        real = [field.name for field in schema if pa.types.is_floating(field.type)]
-        options: dict[str, Any] = {
-            "compression": "zstd",
-            "use_dictionary": [name for name in schema.names if name not in real],
-            "use_byte_stream_split": real,
-        }
-        with pq.ParquetWriter(sink, schema, **options) as parquet:
-            yield Writer(sink, parquet)
-    with path.open("rb+") as file:
-        seal = _seal(file)
-        assert seal is not None
-        digest = _digest_of_end(file, seal)
-        file.seek(seal.place)
-        file.write(digest.encode())
+def writing(file: IO[bytes], schema: pa.Schema) -> Iterator[Writer]:
+    """Yield the writer of an empty file open for both; call its `close` at the end.
+
+    Raises OSError.
+    """
+    sink = _Sink(file)
+    real = [field.name for field in schema if pa.types.is_floating(field.type)]
+    options: dict[str, Any] = {
+        "compression": "zstd",
+        "use_dictionary": [f.name for f in schema if pa.types.is_dictionary(f.type)],
+        "use_byte_stream_split": real,
+        "write_statistics": [name for name in SOUGHT if name in schema.names],
+    }
+    with pq.ParquetWriter(sink, schema, **options) as parquet:
+        yield Writer(sink, parquet)
+    begin, footer = _footer(file)
+    place = footer.index(OPEN.encode()) + len(OPEN.encode()) - 64
+    file.seek(begin + place)
+    file.write(hashlib.sha256(footer).hexdigest().encode())
 
 
-def unseal(path: Path) -> tuple[str, pq.ParquetFile]:
-    """Return the text and the table of a sealed file, every byte of which is as it was written.
+def verified(path: Path, what: str) -> tuple[str, pq.ParquetFile]:
+    """Return text and table of a checksummed file, every byte of which is as it was written.
 
     Raises:
         SettingsError: it cannot be read, is no such file, is cut short, or was altered; it says
-            where.
+            where. `what` it should be is told of a file of another kind.
     """
-    with opened(path, "recording") as file:
-        try:
-            seal = _seal(file)
-            size = file.seek(0, os.SEEK_END)
-            if seal is None:
-                raise _unsealed(path, file, size)
-            if seal.digest != _digest_of_end(file, seal):
-                what = "is altered or cut short" if _ends_well(file) else "is cut short"
-                raise SettingsError(f"{path}: {what} behind byte {seal.begin:,}, at its end")
-            table = pq.ParquetFile(path)
-            told = table.metadata.metadata
-            blocks = TypeAdapter(list[Block]).validate_json(told[BLOCKS.encode()])
-            _check_blocks(path, file, blocks, seal.begin)
-            return told[TEXT.encode()].decode("ascii"), table
-        except (ValidationError, KeyError, UnicodeDecodeError, pa.ArrowException):
-            raise SettingsError(f"{path}: is sealed as a recording, but holds none") from None
-        except OSError as error:
-            raise SettingsError(f"{path}: cannot be read: {error.strerror or error}") from None
+    with _reading(path, what) as file:
+        end = _check_footer(path, file, what)
+        table = pq.ParquetFile(path)
+        metadata = table.metadata.metadata
+        blocks = TypeAdapter(list[Block]).validate_json(metadata[BLOCKS.encode()])
+        _check_blocks(path, file, blocks, end)
+        return metadata[TEXT.encode()].decode("ascii"), table
 
 
-class _Seal(NamedTuple):
-    begin: int  # of the bytes it covers
-    digest: str
-    place: int  # of its digest in the file
+def header(path: Path, what: str) -> tuple[str, int]:
+    """Return text and number of rows of a checksummed file; its blocks are not read.
+
+    Raises SettingsError as `verified` does.
+    """
+    with _reading(path, what) as file:
+        _check_footer(path, file, what)
+        metadata = pq.read_metadata(path)
+        return metadata.metadata[TEXT.encode()].decode("ascii"), metadata.num_rows
 
 
-def _seal(file: IO[bytes]) -> _Seal | None:
-    """Return the last seal near the end of a file, if there is one."""
-    start = max(0, file.seek(0, os.SEEK_END) - END)
-    file.seek(start)
-    found = None
-    for found in SEALED.finditer(file.read()):  # noqa: B007
-        pass
+def read_parquet(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
+    """Return a Parquet file as it is. Raises OSError, ValueError or Arrow's own.
+
+    `pyarrow.parquet.read_table` would take a folder called seed=1 for a column. And Arrow opens the
+    file itself: a file or bytes of Python's may be let go by a thread of Arrow's while the process
+    ends, which aborts it.
+    """
+    with pq.ParquetFile(path) as file:
+        return file.read(None if columns is None else list(columns))
+
+
+@contextmanager
+def _reading(path: Path, what: str) -> Iterator[IO[bytes]]:
+    try:
+        with opened(path, what) as file:
+            yield file
+    except (ValidationError, KeyError, UnicodeDecodeError, pa.ArrowException):
+        raise SettingsError(f"{path}: has right checksums, but holds no {what}") from None
+    except OSError as error:
+        raise SettingsError(f"{path}: cannot be read: {error.strerror or error}") from None
+
+
+def _check_footer(path: Path, file: IO[bytes], what: str) -> int:
+    """Return where the footer begins, as it was written. Raises SettingsError."""
+    size = file.seek(0, os.SEEK_END)
+    if size == 0:
+        raise SettingsError(f"{path}: is empty")
+    begin, footer = _footer(file)
+    found = CLOSED.search(footer) if footer.endswith(MAGIC) else None
+    file.seek(0)
+    if found is None and file.read(len(MAGIC)) != MAGIC:
+        raise SettingsError(f"{path}: is no {what}: it does not begin like one")
+    if not footer.endswith(MAGIC):
+        raise SettingsError(f"{path}: is cut short: it ends at byte {size:,} without its end")
     if found is None:
-        return None
-    place = start + found.start(2)
-    return _Seal(min(int(found[1]), place), found[2].decode(), place)
+        raise SettingsError(
+            f"{path}: has no checksum: it is another Parquet file, or altered at its end"
+        )
+    digest = hashlib.sha256(footer[: found.start(1)] + b"0" * 64 + footer[found.end(1) :])
+    if digest.hexdigest().encode() != found[1]:
+        raise SettingsError(f"{path}: is altered behind byte {begin:,}, at its end")
+    return begin
 
 
-def _digest_of_end(file: IO[bytes], seal: _Seal) -> str:
-    """Return the digest of what a seal covers, its own digest taken for zeros."""
-    digest = hashlib.sha256()
-    _read(file, seal.begin, seal.place, digest)
-    digest.update(b"0" * len(seal.digest))
-    _read(file, seal.place + len(seal.digest), file.seek(0, os.SEEK_END), digest)
-    return digest.hexdigest()
+def _footer(file: IO[bytes]) -> tuple[int, bytes]:
+    """Return where the footer of a Parquet file begins by its own account, and all from there."""
+    size = file.seek(0, os.SEEK_END)
+    file.seek(max(0, size - len(MAGIC) - LENGTH))
+    length = min(LARGEST, int.from_bytes(file.read(LENGTH), "little"))
+    begin = max(0, size - len(MAGIC) - LENGTH - length)
+    file.seek(begin)
+    return begin, file.read()
 
 
 def _check_blocks(path: Path, file: IO[bytes], blocks: list[Block], end: int) -> None:
@@ -192,7 +218,7 @@ def _check_blocks(path: Path, file: IO[bytes], blocks: list[Block], end: int) ->
             )
         begin = block.end
     if begin != end:
-        raise SettingsError(f"{path}: nothing seals the bytes from {begin:,} to {end:,}")
+        raise SettingsError(f"{path}: no checksum is of the bytes from {begin:,} to {end:,}")
 
 
 def _read(file: IO[bytes], begin: int, end: int, digest: Any) -> None:
@@ -200,22 +226,3 @@ def _read(file: IO[bytes], begin: int, end: int, digest: Any) -> None:
     while begin < end and (piece := file.read(min(PIECE, end - begin))):
         digest.update(piece)
         begin += len(piece)
-
-
-def _unsealed(path: Path, file: IO[bytes], size: int) -> SettingsError:
-    """Return what is wrong with a file that has no seal."""
-    if size == 0:
-        return SettingsError(f"{path}: is empty")
-    file.seek(0)
-    if file.read(len(MAGIC)) != MAGIC:
-        return SettingsError(f"{path}: is no recording: it does not begin like one")
-    if not _ends_well(file):
-        return SettingsError(f"{path}: is cut short: it ends at byte {size:,} without its end")
-    return SettingsError(
-        f"{path}: has no seal of a recording: it is another Parquet file, or altered at its end"
-    )
-
-
-def _ends_well(file: IO[bytes]) -> bool:
-    file.seek(-len(MAGIC), os.SEEK_END)
-    return file.read() == MAGIC

@@ -1,8 +1,8 @@
 """A recording: a life in a file, from which it can be looked at, lived again, and gone on with.
 
-It is a sealed Parquet file. Its rows are the trace, a step each; in the first row and in those of
-every n-th step three more columns keep the moment before the step; its text is the head. So to go
-on from any step is to take the last moment kept at or before it, and to live on to it.
+It is a checksummed Parquet file. Its rows are the trace, a step each; in the first row and in those
+of every n-th step three more columns keep the moment before the step; its text is the head. So to
+go on from any step is to take the last moment kept at or before it, and to live on to it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import pyarrow.parquet as pq
 from animat.files import arguments
 from animat.files import atomic as files
 from animat.files.arguments import callback, whole
-from animat.files.checksummed import sealing, unseal
+from animat.files.checksummed import verified, writing
 from animat.files.settings import SettingsError
 from animat.life.life import LONGEST, Life, Moment, Progress, birth, check, live_rows, lived
 from animat.life.scenario import LifeError, Setting
@@ -63,7 +63,11 @@ def write_recording(
     moment = moment.copy()
     tell = progress or (lambda _: None)
     part = _lived_part(moment, head, BLOCK, steps)
-    with files.whole(path) as partial, sealing(partial, part.schema) as file:
+    with (
+        files.whole(path) as partial,
+        partial.open("wb+") as opened,
+        writing(opened, part.schema) as file,
+    ):
         while part.num_rows:
             begin = moment.step - part.num_rows
             file.write(part, f"steps {begin:,} to {moment.step - 1:,}")
@@ -85,7 +89,7 @@ class Recording:
     def load(cls, path: str | Path) -> Recording:
         """Open a recording. Raises SettingsError where the file is none, or not as it was made."""
         path = arguments.path("path", path)
-        text, file = unseal(path)
+        text, file = verified(path, "recording")
         with _naming(path):
             head = read_head(text)
         rows, names = file.metadata.num_rows, file.schema_arrow.names

@@ -7,15 +7,13 @@ from typing import TypeVar
 import numpy as np
 
 from animat.figures.causes import causes_figure
-from animat.figures.margins import margins_figure
+from animat.figures.factor_effects import factor_effects_figure, trend_figure
 from animat.figures.style import spread_out
 from animat.figures.survival import level_curves_figure
-from animat.figures.trend import trend_figure
 from animat.report.page import NOT_KNOWN, Picture, TableBlock, interval, p_value, picture
 from animat.statistics.estimates import Estimate, share
-from animat.statistics.factor_effects import Comparison, Margin
-from animat.statistics.levels import Level
-from animat.statistics.sample import Sample, case_means
+from animat.statistics.factor_effects import Comparison, FactorEffect
+from animat.statistics.sample import Level, Sample, case_means
 
 T = TypeVar("T")
 
@@ -110,12 +108,12 @@ def _share(one: Level, ways: Sequence[str]) -> str:
     return interval(share(count, one.summary.lives), ".1%") if count else "0"
 
 
-def comparisons_table(margin: Margin, corrected: Sequence[float], tests: int) -> TableBlock:
+def comparisons_table(effect: FactorEffect, corrected: Sequence[float], tests: int) -> TableBlock:
     """The levels of a factor against the first; `corrected` are the p values for all `tests`.
 
     Where lives are paired, so are the effect sizes.
     """
-    paired = any(one.paired for one in margin.comparisons)
+    paired = any(one.paired for one in effect.comparisons)
     sizes = PAIRED if paired else ("Lives", "Ratio of mean lifespans", "Cliff's delta")
     rows = [
         (
@@ -125,14 +123,14 @@ def comparisons_table(margin: Margin, corrected: Sequence[float], tests: int) ->
             p_value(one.test.p),
             p_value(p),
         )
-        for one, p in zip(margin.comparisons, corrected, strict=True)
+        for one, p in zip(effect.comparisons, corrected, strict=True)
     ]
     return TableBlock(
         ("Levels", "Where", *sizes, "p", "p, Holm"),
         first_and_last(rows, ROWS_AT_MOST),
-        f"p: {margin.comparisons[0].test.name}. p, Holm: corrected for the {tests} comparisons of"
+        f"p: {effect.comparisons[0].test.name}. p, Holm: corrected for the {tests} comparisons of"
         f" levels on this page. {PAIRED_NOTE if paired else ''}{_left_out(rows)}".strip(),
-        title=f"Against {margin.levels[0].label}",
+        title=f"Against {effect.levels[0].label}",
     )
 
 
@@ -177,31 +175,31 @@ def endings_picture(levels: Sequence[Level]) -> Picture:
     return picture(fig, "How the lives ended.", "Stacked bars of causes of death")
 
 
-def margins_picture(margins: Sequence[Margin], overall: Estimate) -> Picture:
+def factor_effects_picture(effects: Sequence[FactorEffect], overall: Estimate) -> Picture:
     """The mean lifespan at each level of each factor."""
     factors: Mapping[str, Mapping[str, Estimate]] = {
-        margin.factor.name: {
-            one.label: one.summary.mean for one in first_and_last(margin.levels, BARS_AT_MOST)
+        effect.factor.name: {
+            one.label: one.summary.mean for one in first_and_last(effect.levels, BARS_AT_MOST)
         }
-        for margin in margins
+        for effect in effects
     }
     return picture(
-        margins_figure(factors, overall.value),
+        factor_effects_figure(factors, overall.value),
         "Mean lifespan at each level of each factor, over all others, with its 95 % interval.",
         "Dots with intervals for each level of each factor",
     )
 
 
-def trend_picture(margin: Margin, lives: Sample) -> Picture:
+def trend_picture(effect: FactorEffect, lives: Sample) -> Picture:
     """The mean lifespans of cases over a factor that has a range."""
-    name, values = margin.factor.name, margin.factor.values
+    name, values = effect.factor.name, effect.factor.values
     assert values is not None
-    first, means = case_means(lives, margin.factor)
+    first, means = case_means(lives, effect.factor)
     there = ~np.isnan(values[first])
     quarters = [
-        (float(np.median(values[margin.factor.codes == code])), one.summary.mean)
-        for code, one in enumerate(margin.levels)
-        if not np.isnan(values[margin.factor.codes == code]).any()
+        (float(np.median(values[effect.factor.codes == code])), one.summary.mean)
+        for code, one in enumerate(effect.levels)
+        if not np.isnan(values[effect.factor.codes == code]).any()
     ]
     fig = trend_figure(name, values[first][there], means[there], quarters)
     return picture(

@@ -10,7 +10,7 @@ from animat.report.blocks import CURVES_AT_MOST, ROWS_AT_MOST, first_and_last
 from animat.report.page import NOT_KNOWN, Picture, Section, TableBlock, interval, p_value, picture
 from animat.statistics.estimates import LEVEL
 from animat.statistics.findings import Findings
-from animat.statistics.logrank import Significance
+from animat.statistics.significance import Significance
 from animat.statistics.two_factors import Axis, Interaction
 
 SHOWN_AT_MOST = 6
@@ -69,7 +69,7 @@ def _overview(found: Findings) -> Section:
             found.interactions, found.interactions_p, strict=True
         )
     ]
-    pairs = len(found.margins) * (len(found.margins) - 1) // 2
+    pairs = len(found.effects) * (len(found.effects) - 1) // 2
     left_out = [
         f"{pairs - len(rows)} of the {pairs} pairs of factors are not tested, as no combination of"
         " the other factors has all their levels crossed."

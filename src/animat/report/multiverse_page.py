@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pyarrow.parquet as pq
 from matplotlib.figure import Figure
 from pyarrow import csv
@@ -19,22 +20,15 @@ from animat.figures.verdicts import verdicts_figure
 from animat.files.atomic import whole, write_whole
 from animat.files.provenance import provenance
 from animat.report import page
-from animat.report.inputs import inputs_sections
-from animat.report.multiverse_tables import (
-    WORDS,
-    cap_table,
-    cells_table,
-    interactions_tables,
-    left_out_table,
-    readings_table,
-    shares_table,
-    smallest_table,
-)
-from animat.statistics.estimates import share
-from animat.statistics.predict import Foretold
+from animat.report.inputs import inputs_of
+from animat.report.multiverse_tables import WORDS, sets_table, shares_table
+from animat.statistics.claims import CELLS, CLAIMS, EFFECTS
+from animat.statistics.estimates import mean, share
+from animat.statistics.lives import column
+from animat.statistics.marginal_effects import largest_imbalance
+from animat.statistics.predict import Prediction
 from animat.statistics.sufficient_sets import NEARLY_ALL, SUPPORT, SURELY
 from animat.statistics.survival import ALIVE, DeathCount
-from animat.statistics.universes import CELLS, CLAIMS
 
 GAINS = {
     "abundant_gain": "factor on the abundant gain",
@@ -47,23 +41,8 @@ CURVES = {
 }
 """Effects drawn as specification curves: the claim whose verdicts colour them, words, lines."""
 
-FIGURES = {
-    "verdicts": "In how many universes each claim holds, is undecided, or fails.",
-    "points": (
-        "By how many points each value of a reading changes the share of universes in which a"
-        " claim holds. Grey on white: the 95 % interval has 0 in it. Blank: too few universes."
-    ),
-    "factors": (
-        "By what factor each value changes the ratio of lifespans AF / BLIND, in the geometric mean"
-        " over universes, with 95 % intervals. Grey: the interval has 1 in it."
-    ),
-    "curve_abundant_gain": (
-        "Specification curve of the abundant gain. Above, every universe; below, the darker, the"
-        " more of the universes there have taken that value. The dashed line is the paper's figure."
-    ),
-    "curve_scarce_gain": "The same of the scarce gain.",
-    "causes": "How the lives of all universes ended.",
-}
+FIGURES = ("verdicts", "points", "factors", "causes", *(f"curve_{effect}" for effect in CURVES))
+"""Every figure by the name of its file."""
 
 
 def publish(found: Multiverse, directory: Path, command: str, tell: Callable[[], None]) -> None:
@@ -75,15 +54,39 @@ def publish(found: Multiverse, directory: Path, command: str, tell: Callable[[],
     pictures = {}
     for name, draw in _drawings(found).items():
         drawn, _ = save(draw(), directory / name)
-        pictures[name] = page.picture_file(drawn, FIGURES[name], FIGURES[name])
+        pictures[name] = page.address_of(drawn)
         tell()
+    shares, sets = shares_table(found), sets_table(found)
     page.write_page(
         directory / "report.html",
-        "The multiverse of the paper",
-        [*_sections(found, pictures, command), *inputs_sections(directory)],
-        lead=[_lead(found)],
+        "multiverse",
+        found=found,
+        study=found.study,
+        pictures=pictures,
+        effects=EFFECTS,
+        shares=shares,
+        sets=sets,
+        cells=_cells(found),
+        uneven=largest_imbalance(found.table, found.universes.names()),
+        nearly_all=NEARLY_ALL,
+        surely=SURELY,
+        support=SUPPORT,
+        command=command,
+        made=found.study.to_toml() + "\n" + json.dumps(provenance(), indent=2),
+        files=inputs_of(directory),
     )
     tell()
+
+
+def _cells(found: Multiverse) -> list[list[str]]:
+    """Lifespans, survival and success of each cell over all universes."""
+    rows = []
+    for world, agent in CELLS:
+        rows.append([f"{agent}, {world}"])
+        for what, form in (("mean", ",.0f"), ("alive", ".1%"), ("success", ".1%")):
+            values = column(found.table, f"{what}_{world}_{agent}")
+            rows[-1].append(page.interval(mean(values[~np.isnan(values)]), form))
+    return rows
 
 
 def _drawings(found: Multiverse) -> dict[str, Callable[[], Figure]]:
@@ -109,7 +112,7 @@ def _write_tables(found: Multiverse, directory: Path) -> None:
         "shares": found.shares,
         "marginal_effects": found.marginal,
         "interactions": found.interactions,
-        "cap": found.cap,
+        "cap": found.time_limit,
     }
     for name, table in tables.items():
         if table is not None:
@@ -129,12 +132,12 @@ def _write_tables(found: Multiverse, directory: Path) -> None:
         }
         for claim, one in found.found.items()
     }  # fmt: skip
-    models = [_model(one) for one in found.foretold or ()]
+    models = [_model(one) for one in found.predicted or ()]
     text = json.dumps({"smallest_sets": sets, "models": models}, indent=2) + "\n"
     write_whole(directory / "findings.json", text.encode())
 
 
-def _model(one: Foretold) -> dict[str, object]:
+def _model(one: Prediction) -> dict[str, object]:
     scores = {name: getattr(one, name)._asdict() for name in ("single", "pairs", "tree")}
     rules = [
         {"conditions": rule.conditions, "universes": rule.universes, "share": rule.share._asdict()}
@@ -155,73 +158,3 @@ def _causes(found: Multiverse) -> dict[str, list[DeathCount]]:
         cell: [DeathCount(*way, n, share(n, sum(ways.values()))) for way, n in ways.items()]
         for cell, ways in counts.items()
     }
-
-
-def _lead(found: Multiverse) -> str:
-    study = found.study
-    assert study.teacher is not None
-    return (
-        f"The paper leaves much open. Here are {found.table.num_rows:,} universes, each with one"
-        f" value for each of {len(found.universes.readings)} readings. In each,"
-        f" {study.teacher.robots} robots learnt for {study.teacher.steps:,} steps, {study.lives:,}"
-        f" lives were lived in each of the four cells of Experiment 2, up to {study.steps:,} steps,"
-        " and the paper's seven claims were judged."
-    )
-
-
-def _sections(
-    found: Multiverse, pictures: dict[str, page.Picture], command: str
-) -> list[page.Section]:
-    return [
-        page.Section(
-            "How often each claim holds",
-            tables=[shares_table(found)],
-            pictures=[pictures["verdicts"]],
-        ),
-        page.Section(
-            "What each reading does",
-            paragraphs=[
-                "A value is compared with the first value of its reading, in the universes in which"
-                " either was possible. Intervals are of each comparison alone; of the values"
-                " that change nothing, about one in twenty has an interval that says otherwise."
-                " marginal_effects.csv has all of them."
-            ],
-            pictures=[pictures["points"], pictures["factors"]],
-        ),
-        page.Section(
-            "Specification curves", pictures=[pictures[f"curve_{effect}"] for effect in CURVES]
-        ),
-        page.Section("Which readings matter to each other", tables=interactions_tables(found)),
-        page.Section(
-            "The smallest sets of readings",
-            paragraphs=[
-                f"The fewest readings with which a claim holds in at least {NEARLY_ALL:.0%} of"
-                f" universes here, and by its interval in more than {SURELY:.0%}, the others being"
-                f" what they may; at least {SUPPORT} universes must meet them. Being the best of"
-                " very many sets, it may still owe something to chance; so it is judged by fresh"
-                " universes, with other layouts and other lives."
-            ],
-            tables=[smallest_table(found)],
-        ),
-        _cap(found),
-        page.Section(
-            "Lives and deaths", tables=[cells_table(found)], pictures=[pictures["causes"]]
-        ),
-        page.Section("The universes", tables=[readings_table(found), left_out_table(found)]),
-        page.Section(
-            "How this was made",
-            paragraphs=[f"{command} makes the same again; it goes on where it was ended."],
-            code=found.study.to_toml() + "\n" + json.dumps(provenance(), indent=2),
-        ),
-    ]
-
-
-def _cap(found: Multiverse) -> page.Section:
-    title = "What the cap does"
-    if found.cap is None:
-        return page.Section(title, paragraphs=["No universe was lived to a later cap."])
-    first = found.cap.column("universes")[0].as_py()
-    told = (
-        f"The first {first:,} universes, lived to {found.study.steps:,} steps and to a later cap."
-    )
-    return page.Section(title, paragraphs=[told], tables=[cap_table(found.cap)])

@@ -10,20 +10,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
-from jinja2 import Environment, StrictUndefined
+from jinja2 import Environment, FunctionLoader, StrictUndefined
 from matplotlib.figure import Figure
 
 from animat.figures.style import png, svg
 from animat.files.atomic import write_whole
-from animat.statistics.claims import Claim, Part, Verdict
-from animat.statistics.estimates import LEVEL, Estimate
-from animat.statistics.survival import CellSummary
-
-PAPER = (
-    "Cos-Aguilera, I., Cañamero, L. and Hayes, G. M. (2003). Motivation-Driven Learning of "
-    "Object Affordances: First Experiments Using a Simulated Khepera Robot."
-)
 
 NOT_KNOWN, ENDLESS = "–", "∞"
 
@@ -37,11 +30,10 @@ LARGEST_SVG = 400_000
 """A picture whose SVG has more bytes is put into the page as PNG."""
 
 
-@dataclass(frozen=True)
-class Badge:
+class Badge(str):
     """A verdict as a cell of a table."""
 
-    verdict: Verdict
+    __slots__ = ()
 
 
 @dataclass(frozen=True)
@@ -49,7 +41,7 @@ class TableBlock:
     """A table: names of the columns, rows of texts or badges, what is said below and above it."""
 
     columns: Sequence[str]
-    rows: Sequence[Sequence[str | Badge]]
+    rows: Sequence[Sequence[str]]
     note: str = ""
     title: str = ""
 
@@ -87,33 +79,29 @@ class Section:
     notices: Sequence[str] = ()
 
 
-def write_page(
-    path: Path | str,
-    title: str,
-    sections: Sequence[Section],
-    *,
-    lead: Sequence[str] = (),
-    notices: Sequence[str] = (),
-) -> None:
-    """Write the page to `path`, whole or not at all.
+def write_page(path: Path | str, template: str = "page", /, **content: Any) -> None:
+    """Write a page to `path`, whole or not at all.
 
-    `notices` and then `lead` are paragraphs before all sections. Raises SettingsError if it cannot
-    be written.
+    The template of that name gets `content`; the general one shows `title`, the paragraphs
+    `notices` and `lead`, and `sections`. Raises SettingsError if it cannot be written.
     """
-    source = files("animat.report").joinpath("templates/report.html.j2").read_text("utf-8")
     environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        loader=FunctionLoader(_template),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
     )
-    text = environment.from_string(source).render(
-        title=title,
-        notices=notices,
-        lead=lead,
-        sections=sections,
-        paper=PAPER,
-        generator=GENERATOR,
-        is_badge=_is_badge,
-    )
+    environment.filters |= {"form": format, "interval": interval, "p": p_value, "badge": Badge}
+    environment.tests["badge"] = lambda cell: isinstance(cell, Badge)
+    given = {"notices": (), "lead": (), "sections": (), "files": None, "contents": []}
+    page = environment.get_template(f"{template}.html.j2")
+    text = page.render(given | content, generator=GENERATOR)
     write_whole(Path(path), text.encode())
+
+
+def _template(name: str) -> str:
+    return files("animat.report").joinpath("templates", name).read_text("utf-8")
 
 
 def is_page(path: Path) -> bool:
@@ -132,73 +120,14 @@ def picture(fig: Figure, caption: str, alternative: str) -> Picture:
     return Picture("png", png(fig), caption, alternative)
 
 
-def picture_file(path: Path | str, caption: str, alternative: str) -> Picture:
-    """A saved SVG or PNG as a picture of the page."""
-    path = Path(path)
+def address_of(path: Path) -> str:
+    """A saved SVG or PNG as an address that holds it."""
     kind = {".svg": "svg+xml", ".png": "png"}[path.suffix]
-    return Picture(kind, path.read_bytes(), caption, alternative)
+    return Picture(kind, path.read_bytes(), "", "").address
 
 
-def claims_section(claims: Sequence[Claim], title: str = "The paper's claims") -> Section:
-    """The claims with the paper's figure, ours, and the verdict; their parts in a second table."""
-    tables = [
-        TableBlock(
-            ("", "Claim", "The paper", "Here", "Verdict", "How"),
-            [
-                (claim.id, claim.text, claim.paper, _of(claim), Badge(claim.verdict), claim.how)
-                for claim in claims
-            ],
-            f"Intervals at {LEVEL:.0%}. A claim holds if the whole interval agrees with it, fails "
-            "if the whole interval contradicts it, and is undecided otherwise.",
-        )
-    ]
-    parts = [(claim.id, part) for claim in claims for part in claim.parts]
-    if parts:
-        tables.append(
-            TableBlock(
-                ("", "Part", "Here", "Verdict"),
-                [(name, part.label, _of(part), Badge(part.verdict)) for name, part in parts],
-                "The numbers behind the claims that have several. C3: ratio of mean lifespans "
-                "with its interval; C7: mean likelihood over robots with its interval.",
-            )
-        )
-    return Section(title, tables=tables)
-
-
-def cells_section(summaries: Sequence[CellSummary], title: str = "The cells") -> Section:
-    """Lifespans, acts and stability of each cell, and how its lives ended."""
-    lives = TableBlock(
-        ("Cell", "Lives", "Alive at the cap", "Mean lifespan (steps)", "Median lifespan (steps)",
-         "Acts that succeed", "Mean drive"),
-        [
-            (
-                ", ".join(map(str, cell.cell)),
-                f"{cell.lives:,}",
-                f"{cell.alive:,}",
-                interval(cell.mean, ",.0f"),
-                interval(cell.median, ",.0f"),
-                interval(cell.success_rate, ".1%"),
-                interval(cell.stability, ".3f"),
-            )
-            for cell in summaries
-        ],
-        f"Intervals at {LEVEL:.0%}. Means are restricted: a life still going on at the cap counts "
-        "as ending there. Mean drive is physiological stability; lower is better.",
-    )  # fmt: skip
-    deaths = TableBlock(
-        ("Cell", "How it ended", "Lives", "Share"),
-        [
-            (", ".join(map(str, cell.cell)), way.label, f"{way.count:,}",
-             interval(way.share, ".1%"))
-            for cell in summaries
-            for way in cell.deaths
-        ],
-    )  # fmt: skip
-    return Section(title, tables=(lives, deaths))
-
-
-def interval(estimate: Estimate, form: str) -> str:
-    """An estimate as text, such as "2.01 (1.95 to 2.07)"; a dash for what is not known.
+def interval(estimate: Sequence[float], form: str) -> str:
+    """Value, low and high as text, such as "2.01 (1.95 to 2.07)"; a dash for what is not known.
 
     A value whose interval is not known, or has no width, stands alone.
     """
@@ -220,11 +149,3 @@ def _number(number: float, form: str) -> str:
     if math.isnan(number):
         return NOT_KNOWN
     return ENDLESS if math.isinf(number) else format(number, form)
-
-
-def _of(number: Claim | Part) -> str:
-    return interval(Estimate(number.ours, number.low, number.high), ".2f")
-
-
-def _is_badge(value: object) -> bool:
-    return isinstance(value, Badge)

@@ -1,4 +1,4 @@
-"""What a study asks, in plain words: its cases, what they differ in, and how each is lived."""
+"""What a study asks, in plain words: its cases, what they differ in, and how each is simulated."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from animat.figures.worlds import worlds_figure
 from animat.life.drawing import robot_drawing, world_drawing
 from animat.report.page import Picture, Section, picture
-from animat.statistics.words import LISTED_AT_MOST, listed, word, words
+from animat.statistics.numerals import LISTED_AT_MOST, listed, word, words
 from animat.study.file.cases import Case, excluded
 from animat.study.file.factors import Range
 from animat.study.file.study import Study
@@ -95,7 +95,7 @@ def _records(study: Study) -> list[str]:
         told.append(
             f"the trace ({study.record.what}) of the first {study.record.lives:,} lives of a case"
         )
-    return [f"Kept of a life beside its row: {listed(told)}."] if told else []
+    return [f"Stored of a life beside its row: {listed(told)}."] if told else []
 
 
 def _factors(study: Study) -> list[str]:

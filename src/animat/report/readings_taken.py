@@ -6,26 +6,6 @@ from animat.mind.mind import Mind
 from animat.robot.khepera import Khepera
 from animat.statistics.numerals import numeral
 
-CALIBRATED = (
-    "The number and the places of the objects of Worlds 1 and 2, because Figure 2 is lost. They"
-    " are fixed layouts in data files, chosen among random ones by tools/calibrate.py."
-    " Nothing else was fitted."
-)
-
-ERRATA = (
-    'Table 2 calls 1e-4 and 1e-3 time constants "tau"; they are rates per step. A time constant'
-    " of 1e-4 steps would empty every variable at once.",
-    "Equation 1 is printed as growth, dV/dt = +V/tau, and equation 2 as its decay. Both are laws"
-    " here; a physiology says which variable follows which.",
-    "Equation 4 has a sign and a factor wrong. Equation 2 put into equation 3 gives M = a (V_op -"
-    " V_m) - (V_M - V_m)(a + b/tau) exp(-t/tau).",
-    'The sentence "nutrition to hunger, fatigue to restlessness and curiosity to interaction" is a'
-    " slip: nutrition is watched by hunger, stamina by fatigue, restlessness by curiosity.",
-    "The law of growth stands still at V_m. An act that would carry a growing variable past V_m"
-    " leaves it there, and it never rises again: such a robot can hardly die. A few of these lives"
-    " can make most of a mean; compare the medians. docs/reproduction.md says more.",
-)
-
 
 def readings(mind: Mind, robot: Khepera) -> list[tuple[str, str, str]]:
     """Return (what is open, the setting, the reading taken) for every point that matters."""

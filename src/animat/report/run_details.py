@@ -41,8 +41,8 @@ def notices(progress: Progress, failed: pa.Table) -> list[str]:
     told = []
     if done < total:
         told.append(
-            f"Not finished: {total - done:,} of {total:,} lives are still to be lived. All numbers"
-            " are of the lives that are there, some of every case where there are many."
+            f"Not finished: {total - done:,} of {total:,} lives are still to be simulated. All"
+            " numbers are of the lives that are there, some of every case where there are many."
         )
     if failed.num_rows:
         told.append(
@@ -77,7 +77,7 @@ def _runs(runs: list[dict[str, Any]]) -> dict[str, str]:
         )
     told["Begun"] = runs[0]["made"]
     if len(runs) > 1:
-        told["Gone on with"] = ", ".join(run["made"] for run in runs[1:])
+        told["Resumed"] = ", ".join(run["made"] for run in runs[1:])
     return told
 
 

@@ -10,26 +10,26 @@ from animat.report.blocks import (
     curves_picture,
     endings_picture,
     endings_table,
+    factor_effects_picture,
     lifespans_table,
-    margins_picture,
     measures_table,
     trend_picture,
 )
 from animat.report.interaction_sections import interaction_sections, interactions_in_short
 from animat.report.page import Picture, Section, TableBlock, interval, p_value
 from animat.statistics.estimates import LEVEL
-from animat.statistics.factor_effects import Margin
+from animat.statistics.factor_effects import FactorEffect
 from animat.statistics.findings import Findings
-from animat.statistics.levels import Level
 from animat.statistics.numerals import shortened
+from animat.statistics.sample import Level
 
 NOBODY_DIED = (
     "No life ended before its cap, so lifespans tell nothing apart here, and are not compared."
 )
 
 CONFOUNDED = (
-    "The levels of this factor were lived with different values of the other factors, in too few"
-    " cases to be a sample. What differs between them need not be due to this factor."
+    "The levels of this factor were simulated with different values of the other factors, in too"
+    " few cases to be a sample. What differs between them need not be due to this factor."
 )
 
 
@@ -46,10 +46,10 @@ def in_short(found: Findings) -> list[str]:
         f" {interval(whole.success_rate, '.1%')}, mean drive {interval(whole.stability, '.3f')}."
     ]
     if found.deaths:
-        pairs = zip(found.margins, found.factors_p, strict=True)
+        pairs = zip(found.effects, found.factors_p, strict=True)
         told += [
-            _factor_in_short(margin, p)
-            for margin, p in sorted(pairs, key=lambda pair: -longest_to_shortest(pair[0]))
+            _factor_in_short(effect, p)
+            for effect, p in sorted(pairs, key=lambda pair: -longest_to_shortest(pair[0]))
         ]
         told += interactions_in_short(found)
     return told
@@ -60,9 +60,9 @@ def result_sections(found: Findings) -> list[Section]:
     sections = [overall_section(found)]
     if found.cases:
         sections.append(cases_section(found))
-    if len(found.margins) > 1:
+    if len(found.effects) > 1:
         sections.append(factors_section(found))
-    sections += [margin_section(found, place) for place in range(len(found.margins))]
+    sections += [factor_section(found, place) for place in range(len(found.effects))]
     return [*sections, *interaction_sections(found)]
 
 
@@ -84,7 +84,7 @@ def overall_section(found: Findings) -> Section:
             f" intervals resample {found.resampled}."
         ],
         tables=tables,
-        pictures=_pictures(found, [found.overall]) if not found.margins else (),
+        pictures=_pictures(found, [found.overall]) if not found.effects else (),
         notices=() if found.deaths else [NOBODY_DIED],
     )
 
@@ -102,14 +102,14 @@ def factors_section(found: Findings) -> Section:
     """The factors beside each other."""
     rows = [
         (
-            margin.factor.name,
-            str(len(margin.levels)),
-            _tested(margin),
-            p_value(margin.test.p),
+            effect.factor.name,
+            str(len(effect.levels)),
+            _tested(effect),
+            p_value(effect.test.p),
             p_value(corrected),
-            f"{longest_to_shortest(margin):.2f}",
+            f"{longest_to_shortest(effect):.2f}",
         )
-        for margin, corrected in zip(found.margins, found.factors_p, strict=True)
+        for effect, corrected in zip(found.effects, found.factors_p, strict=True)
     ]
     table = TableBlock(
         ("Factor", "Levels", "Test of lifespans", "p", "p, Holm", "Longest to shortest"),
@@ -121,30 +121,30 @@ def factors_section(found: Findings) -> Section:
         "The factors",
         ["What each factor does over all the others. A factor with a range is cut into quarters."],
         tables=[table] if found.deaths else (),
-        pictures=[margins_picture(found.margins, found.overall.summary.mean)]
+        pictures=[factor_effects_picture(found.effects, found.overall.summary.mean)]
         if found.deaths
         else (),
     )
 
 
-def margin_section(found: Findings, place: int) -> Section:
+def factor_section(found: Findings, place: int) -> Section:
     """One factor: its levels, how they compare with the first, how their lives ended."""
-    margin = found.margins[place]
-    before = sum(len(each.comparisons) for each in found.margins[:place])
-    corrected = found.levels_p[before : before + len(margin.comparisons)]
-    tables = _tables(found, ("Level",), margin.levels)
+    effect = found.effects[place]
+    before = sum(len(each.comparisons) for each in found.effects[:place])
+    corrected = found.levels_p[before : before + len(effect.comparisons)]
+    tables = _tables(found, ("Level",), effect.levels)
     if found.deaths:
-        tables.insert(1, comparisons_table(margin, corrected, len(found.levels_p)))
-    how = _how_compared(margin, alone=len(found.varying) == 1)
-    pictures = _pictures(found, margin.levels, ordered=margin.factor.ordered)
-    if found.deaths and margin.factor.values is not None:
-        pictures.insert(0, trend_picture(margin, found.lives))
+        tables.insert(1, comparisons_table(effect, corrected, len(found.levels_p)))
+    how = _how_compared(effect, alone=len(found.varying) == 1)
+    pictures = _pictures(found, effect.levels, ordered=effect.factor.ordered)
+    if found.deaths and effect.factor.values is not None:
+        pictures.insert(0, trend_picture(effect, found.lives))
     return Section(
-        margin.factor.name,
-        [f"{how} The intervals resample {margin.resampled}."],
+        effect.factor.name,
+        [f"{how} The intervals resample {effect.resampled}."],
         tables=tables,
         pictures=pictures,
-        notices=[CONFOUNDED] if margin.confounded else (),
+        notices=[CONFOUNDED] if effect.confounded else (),
     )
 
 
@@ -159,17 +159,17 @@ def restriction_words(found: Findings) -> str:
     )
 
 
-def longest_to_shortest(margin: Margin) -> float:
+def longest_to_shortest(effect: FactorEffect) -> float:
     """The largest mean lifespan of a level over the smallest; lifespans are at least 1 step."""
-    means = [one.summary.mean.value for one in margin.levels]
+    means = [one.summary.mean.value for one in effect.levels]
     return max(means) / max(min(means), 1.0)
 
 
-def _factor_in_short(margin: Margin, corrected: float) -> str:
-    longest = max(margin.levels, key=lambda one: one.summary.mean.value)
-    shortest = min(margin.levels, key=lambda one: one.summary.mean.value)
+def _factor_in_short(effect: FactorEffect, corrected: float) -> str:
+    longest = max(effect.levels, key=lambda one: one.summary.mean.value)
+    shortest = min(effect.levels, key=lambda one: one.summary.mean.value)
     low, high = shortest.summary.mean.value, longest.summary.mean.value
-    said = shortened(one.label for one in margin.levels)
+    said = shortened(one.label for one in effect.levels)
     ends = (
         f"mean lifespans from {low:,.0f} ({said[shortest.label]}) to {high:,.0f} steps"
         f" ({said[longest.label]})"
@@ -179,17 +179,17 @@ def _factor_in_short(margin: Margin, corrected: float) -> str:
     shown = "" if corrected <= 1 - LEVEL else "no difference shown; "
     p = p_value(corrected)
     said = p if p.startswith("<") else f"= {p}"
-    besides = ", confounded with other factors" if margin.confounded else ""
-    test = f"{margin.test.name} p {said} after correction{besides}"
-    return f"{margin.factor.name}: {shown}{ends}, {test}."
+    besides = ", confounded with other factors" if effect.confounded else ""
+    test = f"{effect.test.name} p {said} after correction{besides}"
+    return f"{effect.factor.name}: {shown}{ends}, {test}."
 
 
-def _how_compared(margin: Margin, *, alone: bool) -> str:
+def _how_compared(effect: FactorEffect, *, alone: bool) -> str:
     if alone:
         return "It is the only factor of this study."
-    if margin.confounded:
+    if effect.confounded:
         return "Levels are compared as they are."
-    if margin.matched:
+    if effect.matched:
         return (
             "Levels are compared within the combinations of the other factors that both have, so"
             " that no other factor differs between them."
@@ -200,8 +200,8 @@ def _how_compared(margin: Margin, *, alone: bool) -> str:
     )
 
 
-def _tested(margin: Margin) -> str:
-    test = margin.test
+def _tested(effect: FactorEffect) -> str:
+    test = effect.test
     if test.name == "Spearman":
         return f"{test.name}, rho = {test.statistic:.2f}"
     if test.freedom == 0:

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from animat.figures.learning import learning_curve_figure
 from animat.files.settings import SettingsError, nearest
 from animat.progress import Telling
-from animat.report.citation import bibtex
-from animat.report.comparison_methods import statistics_words
-from animat.report.inputs import inputs_sections
-from animat.report.learning import learnt_section
-from animat.report.methods import model_words, representatives
-from animat.report.page import Section, TableBlock, is_page, write_page
+from animat.report.inputs import inputs_of
+from animat.report.methods import model_words, representatives, statistics_words
+from animat.report.page import Picture, Section, TableBlock, interval, is_page, picture, write_page
 from animat.report.question import asked_section
 from animat.report.readings_taken import readings
 from animat.report.run_details import how_run_section, notices
 from animat.report.sections import in_short, result_sections
+from animat.statistics.estimates import mean
 from animat.statistics.findings import Findings, find
+from animat.statistics.lives import column
 from animat.study.file.cases import Case, cases
 from animat.study.store.results import Progress, Results
 
@@ -56,7 +57,7 @@ def write_report(
     found = _found(results, lives, by)
     tell("Report", 1, 3)
     short = in_short(found) if found else [NOTHING_YET]
-    inputs = inputs_sections(results.directory)
+    inputs = inputs_of(results.directory)
     sections = [
         asked_section(results.study, laid_out),
         how_run_section(results, progress, failed),
@@ -68,14 +69,20 @@ def write_report(
             "The study file",
             [
                 "With every setting written out. The same engine makes the same lives of it again"
-                f" (animat run){', given the files below' if inputs else ''}."
+                f" (animat run){', given the files below' if inputs.digests else ''}."
             ],
             code=results.text,
         ),
-        *inputs,
     ]
     told = notices(progress, failed)
-    write_page(path, f"Study: {results.study.name}", sections, lead=short, notices=told)
+    write_page(
+        path,
+        title=f"Study: {results.study.name}",
+        sections=sections,
+        lead=short,
+        notices=told,
+        files=inputs,
+    )
     tell("Report", 1, 3)
     return path, [*told, *short]
 
@@ -95,7 +102,7 @@ def _refuse(results: Results, path: Path, by: Sequence[str] | None) -> None:
 
 
 def _lives(results: Results) -> tuple[pa.Table, pa.Table]:
-    """Return the lives that were lived, with `same_as` of their case, and those that failed."""
+    """Return the lives that did not fail, with `same_as` of their case, and those that failed."""
     there = ["case", *results.factors]
     there += [n for n in results.dataset().schema.names if n not in {*there, *LARGE}]
     lives = results.lives(there)
@@ -185,3 +192,70 @@ def _either(texts: Collection[str]) -> str:
     if len(texts) > READINGS_AT_MOST:
         return "differs between cases, as asked"
     return "; or ".join(texts)
+
+
+PREFIX = "likelihood_"
+
+
+def learnt_section(teachers: pa.Table | None, curves: Mapping[str, pa.Table]) -> Section | None:
+    """What robots had learnt before the lives began, and how the networks of lives came to know.
+
+    `teachers` has a row for each robot, with a column likelihood_NETWORK_OBJECT for each network
+    and object type; `curves` are tables as in `learning_curve_figure`, by what they are of. None
+    if there is nothing to tell.
+    """
+    tables = [_robots(teachers)] if teachers is not None and teachers.num_rows else []
+    pictures = [_curve(name, table) for name, table in curves.items()]
+    if not tables and not pictures:
+        return None
+    return Section("What the networks learnt", tables=tables, pictures=pictures)
+
+
+def _robots(teachers: pa.Table) -> TableBlock:
+    rows = []
+    for name in teachers.column_names:
+        if name.startswith(PREFIX):
+            network, _, thing = name.removeprefix(PREFIX).rpartition("_")
+            values = column(teachers, name).astype(np.float64)
+            known = values[~np.isnan(values)]
+            if len(known):
+                rows.append((network, thing, interval(mean(known), ".2f")))
+    return TableBlock(
+        ("Network", "Object", "Mean likelihood"),
+        rows,
+        f"The {teachers.num_rows:,} robots whose networks AF has, after their training.",
+        title="Training robots",
+    )
+
+
+def _curve(name: str, table: pa.Table) -> Picture:
+    return picture(
+        learning_curve_figure(table),
+        f"What the networks say of each object type, over the acts each has learnt from; mean and"
+        f" the middle 90 % of lives ({name}).",
+        f"Likelihood against episodes, {name}",
+    )
+
+
+PAPER = """\
+@misc{cosaguilera2003motivation,
+  author = {Cos-Aguilera, I. and Ca{\\~n}amero, Lola and Hayes, G. M.},
+  title  = {Motivation-Driven Learning of Object Affordances: First Experiments Using a
+            Simulated {Khepera} Robot},
+  year   = {2003}
+}
+"""
+
+ANIMAT = """\
+@software{{animat,
+  author  = {{{{animat contributors}}}},
+  title   = {{animat: a laboratory for motivated robots}},
+  version = {{{version}}},
+  license = {{MIT}}
+}}
+"""
+
+
+def bibtex(version: str) -> str:
+    """The paper, and animat of a version."""
+    return PAPER + "\n" + ANIMAT.format(version=version)

@@ -1,13 +1,18 @@
 """Estimates with intervals: what the report says of a sample, and how sure it is.
 
-Bootstrap intervals come from `scipy.stats.bootstrap`, shares from Wilson's interval
-(`scipy.stats.binomtest`). Every function takes its own seed, so that a report made twice
-from one table is the same report.
+There is one bootstrap, of functions of means: one sample alone, or many at once, a row each, that
+are resampled alike. It is `scipy.stats.bootstrap`; shares have Wilson's interval
+(`scipy.stats.binomtest`). Every function takes its own seed, so that a report made twice from one
+table is the same report.
+
+Of whole numbers, such as lifespans, a row has the interval it would have alone, to the last digit.
+Of other numbers it may differ where very few values are resampled: BCa counts the resamples that
+equal the sample, and whether a sum in another order is equal is then a matter of rounding.
 """
 
 import warnings
 from collections.abc import Callable, Sequence
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,14 +25,14 @@ RESAMPLES = 3_999
 """Bootstrap resamples: the ends of a 95 % interval move by some 2 % of its width by chance."""
 
 BCA_LIMIT = 2_000
-"""Largest sample that gets the BCa interval by default. It leaves out each life once, which costs
-the square of their number, and its correction shrinks with the root of it; beyond, percentiles."""
+"""Largest sample that gets the BCa interval. It leaves out each value once, which costs the square
+of their number, and its correction shrinks with the root of it; beyond, percentiles."""
 
-_BATCH_NUMBERS = 4_000_000
+NUMBERS = 4_000_000
+"""How many numbers are held at once: resamples times values, or rows times resamples."""
 
-Method = Literal["BCa", "percentile", "normal"]
-"""`normal` draws the means of many values from the normal law that they follow then, instead of
-the values: percentiles at no cost. It is never chosen by itself, and only for means of pairs."""
+OfMeans = Callable[..., NDArray[np.float64]]
+"""A function of the mean of each sample, arrays of one shape, that returns one of that shape."""
 
 
 class Estimate(NamedTuple):
@@ -36,6 +41,18 @@ class Estimate(NamedTuple):
     value: float
     low: float
     high: float
+
+
+class Estimates(NamedTuple):
+    """Values with their confidence intervals, arrays [R], a row each."""
+
+    value: NDArray[np.float64]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+
+    def at(self, row: int) -> Estimate:
+        """The estimate of a row."""
+        return Estimate(float(self.value[row]), float(self.low[row]), float(self.high[row]))
 
 
 UNKNOWN = Estimate(float("nan"), float("nan"), float("nan"))
@@ -49,154 +66,102 @@ def share(count: int, total: int) -> Estimate:
     return Estimate(count / total, float(interval.low), float(interval.high))
 
 
-def bootstrapped(
+def mean(values: NDArray[np.float64], *, seed: int = 0, resamples: int = RESAMPLES) -> Estimate:
+    """Mean of `values` [n] with its interval."""
+    return of_means([values], lambda one: one, seed=seed, resamples=resamples)
+
+
+def of_means(
     samples: Sequence[NDArray[np.float64]],
-    statistic: Callable[..., NDArray[np.float64]],
+    function: OfMeans,
     *,
-    paired: bool = False,
     seed: int = 0,
     resamples: int = RESAMPLES,
-    method: Method | None = None,
 ) -> Estimate:
-    """`statistic(*samples, axis)` with its bootstrap interval.
+    """`function` of the means of `samples`, arrays [n], with its interval; as `rows_of_means`."""
+    rows = [np.asarray(sample, dtype=np.float64)[None] for sample in samples]
+    return rows_of_means(rows, function, seed=seed, resamples=resamples).at(0)
 
-    `samples` are arrays [n_i]; with `paired` all of one length, entry k of each belonging
-    together, and resampled together. `method` None takes BCa up to `BCA_LIMIT` values and
-    percentiles beyond. Samples in which nothing varies have an interval of no width, a single value
-    has none that is known.
-    Raises ValueError if a sample is empty.
+
+def rows_of_means(
+    samples: Sequence[NDArray[np.float64]],
+    function: OfMeans,
+    *,
+    seed: int = 0,
+    resamples: int = RESAMPLES,
+) -> Estimates:
+    """`function` of the means of every row of `samples`, with its bootstrap interval.
+
+    `samples` are arrays [R, n]; entry k of each belongs together and is resampled together. The
+    interval is BCa up to `BCA_LIMIT` values and percentiles beyond. Where nothing varies it has no
+    width, of a single value it is unknown. Raises ValueError if n is 0.
     """
-    if any(len(sample) == 0 for sample in samples):
+    rows, values = samples[0].shape
+    if values == 0:
         raise ValueError("an estimate needs at least one value in every sample")
-    value = float(statistic(*samples, axis=-1))
-    if min(len(sample) for sample in samples) < 2:
-        return Estimate(value, float("nan"), float("nan"))
-    if all(np.all(sample == sample[0]) for sample in samples):
-        return Estimate(value, value, value)
-    largest = max(len(sample) for sample in samples)
-    chosen = method or ("BCa" if largest <= BCA_LIMIT else "percentile")
-    interval = _interval(samples, statistic, paired, seed, resamples, chosen)
-    if chosen == "BCa" and not np.all(np.isfinite(interval)):
-        # BCa has no answer when every resample lies on one side of the value.
-        interval = _interval(samples, statistic, paired, seed, resamples, "percentile")
-    return Estimate(value, *interval)
+    value = np.asarray(function(*(sample.mean(axis=1) for sample in samples)), dtype=np.float64)
+    if values == 1:
+        return Estimates(value, np.full(rows, np.nan), np.full(rows, np.nan))
+    low, high = value.copy(), value.copy()
+    varies = np.any([np.ptp(sample, axis=1) > 0.0 for sample in samples], axis=0)
+
+    def fill(chosen: NDArray[np.int64], method: str) -> None:
+        if chosen.size:
+            parts = [sample[chosen] for sample in samples]
+            low[chosen], high[chosen] = _interval(parts, function, seed, resamples, method)
+
+    at_once = max(1, NUMBERS // resamples)
+    for first in range(0, rows, at_once):
+        chosen = first + np.flatnonzero(varies[first : first + at_once])
+        fill(chosen, "BCa" if values <= BCA_LIMIT else "percentile")
+    # BCa has no answer when every resample lies on one side of the value.
+    fill(np.flatnonzero(varies & ~(np.isfinite(low) & np.isfinite(high))), "percentile")
+    return Estimates(value, low, high)
 
 
 def _interval(
     samples: Sequence[NDArray[np.float64]],
-    statistic: Callable[..., NDArray[np.float64]],
-    paired: bool,
+    function: OfMeans,
     seed: int,
     resamples: int,
-    method: Method,
-) -> tuple[float, float]:
-    largest = max(len(sample) for sample in samples)
+    method: str,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    values = samples[0].shape[1]
+
+    def statistic(entries: NDArray[np.int64], axis: int = -1) -> NDArray[np.float64]:
+        """For resamples given as places of entries, [..., n], the statistic [R, ...]."""
+        return np.asarray(function(*_means(samples, entries)), dtype=np.float64)
+
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", stats.DegenerateDataWarning)
         warnings.simplefilter("ignore", RuntimeWarning)
         result = stats.bootstrap(
-            tuple(samples),
+            (np.arange(values),),
             statistic,
-            paired=paired,
             vectorized=True,
             n_resamples=resamples,
-            batch=max(1, _BATCH_NUMBERS // largest),
+            batch=max(1, NUMBERS // values),
             confidence_level=LEVEL,
             method=method,
             rng=np.random.default_rng(seed),
         )
     interval = result.confidence_interval
-    return float(interval.low), float(interval.high)
+    return interval.low, interval.high
 
 
-def of_means(
-    samples: Sequence[NDArray[np.float64]],
-    function: Callable[..., NDArray[np.float64]],
-    *,
-    paired: bool = False,
-    seed: int = 0,
-    resamples: int = RESAMPLES,
-    method: Method | None = None,
-) -> Estimate:
-    """`function` of the means of `samples`, arrays [n_i], with its bootstrap interval.
+def _means(
+    samples: Sequence[NDArray[np.float64]], entries: NDArray[np.int64]
+) -> list[NDArray[np.float64]]:
+    """The means [R, ...] of the entries at some places [..., n] of every row.
 
-    `function` takes a number, or an array of them, for each sample. `method` "normal" needs
-    `paired`; else as in `bootstrapped`.
+    Of many rows a resample is taken as how often it holds each entry, so that all means are a
+    product of two matrices.
     """
-    if method == "normal":
-        return _of_normal_means(np.stack(samples), function, seed, resamples)
-    if any(len(sample) == 0 for sample in samples):
-        raise ValueError("an estimate needs at least one value in every sample")
-    # What does not vary needs no drawing; of a single value it cannot be told.
-    fixed = [
-        sample[0] if len(sample) > 1 and np.all(sample == sample[0]) else None for sample in samples
-    ]
-    varying = [sample for sample, value in zip(samples, fixed, strict=True) if value is None]
-
-    def statistic(*drawn: NDArray[np.float64], axis: int = -1) -> NDArray[np.float64]:
-        means = iter(drawn)
-        return function(
-            *(np.mean(next(means), axis=axis) if value is None else value for value in fixed)
-        )
-
-    return bootstrapped(
-        varying or samples[:1],
-        statistic if varying else lambda one, axis: function(*fixed),
-        paired=paired,
-        seed=seed,
-        resamples=resamples,
-        method=method,
-    )
-
-
-def _of_normal_means(
-    samples: NDArray[np.float64],
-    function: Callable[..., NDArray[np.float64]],
-    seed: int,
-    resamples: int,
-) -> Estimate:
-    """A function of the means of `samples` [k, n], whose joint law is taken for normal."""
-    means = samples.mean(axis=1)
-    spread = np.atleast_2d(np.cov(samples)) / samples.shape[1]
-    rng = np.random.default_rng(seed)
-    drawn = rng.multivariate_normal(means, spread, resamples, check_valid="ignore", method="eigh")
-    tails = (1 - LEVEL) / 2, (1 + LEVEL) / 2
-    low, high = np.quantile(function(*drawn.T), tails)
-    return Estimate(float(function(*means)), float(low), float(high))
-
-
-def mean(
-    values: NDArray[np.float64],
-    *,
-    seed: int = 0,
-    resamples: int = RESAMPLES,
-    method: Method | None = None,
-) -> Estimate:
-    """Mean of `values` [n] with its bootstrap interval."""
-    return of_means([values], lambda one: one, seed=seed, resamples=resamples, method=method)
-
-
-def ratio_of_means(
-    numerator: NDArray[np.float64],
-    denominator: NDArray[np.float64],
-    *,
-    paired: bool,
-    seed: int = 0,
-    resamples: int = RESAMPLES,
-    method: Method | None = None,
-) -> Estimate:
-    """Mean of `numerator` [n] over mean of `denominator` [m] with its bootstrap interval.
-
-    `paired`: entry k of both shares its luck (n equals m). Raises ValueError if the
-    denominator's mean is 0.
-    """
-    if len(denominator) and not np.any(denominator):
-        raise ValueError("the ratio of means has a denominator of 0")
-    return of_means(
-        [numerator, denominator],
-        np.divide,
-        paired=paired,
-        seed=seed,
-        resamples=resamples,
-        method=method,
-    )
+    if len(samples[0]) * entries.size <= 2 * NUMBERS:
+        return [np.take(sample, entries, axis=1).mean(axis=-1) for sample in samples]
+    values = samples[0].shape[1]
+    drawn = entries.reshape(-1, entries.shape[-1]).astype(np.int64)
+    places = drawn + values * np.arange(len(drawn))[:, None]
+    times = np.bincount(places.ravel(), minlength=values * len(drawn)).reshape(-1, values)
+    shape = (len(samples[0]), *entries.shape[:-1])
+    return [(sample @ times.T / drawn.shape[1]).reshape(shape) for sample in samples]

@@ -12,15 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from animat.statistics.effects import cliffs_delta
+from animat.statistics.effects import PairedEffects, cliffs_delta, paired_effects
 from animat.statistics.estimates import RESAMPLES, Estimate
 from animat.statistics.factors import Factor
-from animat.statistics.levels import Level, level
 from animat.statistics.lives import lifespans
-from animat.statistics.logrank import Significance, stratified_logrank
-from animat.statistics.paired import PairedEffects, paired_effects
 from animat.statistics.resampling import SETS_AT_LEAST, codes_of, quotient_over, sets_of
-from animat.statistics.sample import Sample, case_means, other_combinations
+from animat.statistics.sample import Level, Sample, case_means, level, other_combinations
+from animat.statistics.significance import Significance, stratified_logrank
 
 COMBINATIONS_SHOWN = 6
 """Levels are also compared within each combination of the other factors, if these are few and have
@@ -46,7 +44,7 @@ class Comparison(NamedTuple):
     test: Significance
 
 
-class Margin(NamedTuple):
+class FactorEffect(NamedTuple):
     """What a factor does.
 
     `matched`: its levels occur in the same combinations of the other factors; if not, and there
@@ -62,14 +60,14 @@ class Margin(NamedTuple):
     resampled: str
 
 
-def margin(
+def factor_effect(
     lives: Sample,
     name: str,
     measures: Sequence[str] = (),
     *,
     seed: int = 0,
     resamples: int = RESAMPLES,
-) -> Margin:
+) -> FactorEffect:
     """What the factor `name` does, over all others; `measures` are columns to give means of."""
     chosen = lives.factor(name)
     within = other_combinations(lives, name)
@@ -95,7 +93,7 @@ def margin(
             _compare(lives, chosen, some, compared, where, stratum, seed, resamples)
             for where, some in places.items()
         ]
-    return Margin(
+    return FactorEffect(
         chosen,
         tuple(levels),
         tuple(comparisons),

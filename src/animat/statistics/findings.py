@@ -5,13 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
+from numpy.typing import NDArray
 
 from animat.statistics.estimates import Estimate
-from animat.statistics.factor_effects import Margin, margin
-from animat.statistics.levels import Level, level
-from animat.statistics.multiple import holm
+from animat.statistics.factor_effects import FactorEffect, factor_effect
 from animat.statistics.resampling import Sets, ratio_over, sets_of
-from animat.statistics.sample import Sample, sample
+from animat.statistics.sample import Level, Sample, level, sample
 from animat.statistics.two_factors import Interaction, interactions
 
 RESAMPLES = 1_999
@@ -28,7 +27,7 @@ class Findings(NamedTuple):
     the factors that do. `by_behaviour`
     is the share of acts that succeed. `interactions` are those of the pairs of told factors that
     are crossed, none where nobody died. The p values are by Holm's correction, each over all tests
-    of its kind: `factors_p` [margins], `levels_p` [all comparisons, margin after margin],
+    of its kind: `factors_p` [effects], `levels_p` [all comparisons, effect after effect],
     `interactions_p` [interactions] and `contrasts_p` [all contrasts, interaction after
     interaction]; the latter two of differences and of ratios, all corrected together.
     """
@@ -38,7 +37,7 @@ class Findings(NamedTuple):
     by_behaviour: Mapping[str, tuple[int, Estimate]]
     varying: tuple[str, ...]
     cases: tuple[Level, ...]
-    margins: tuple[Margin, ...]
+    effects: tuple[FactorEffect, ...]
     factors_p: tuple[float, ...]
     levels_p: tuple[float, ...]
     interactions: tuple[Interaction, ...]
@@ -70,11 +69,11 @@ def find(
     varying = [each.name for each in lives.factors if len(np.unique(each.codes)) > 1]
     told = [name for name in (factors if by is None else by) if name in varying]
     how = {"seed": seed, "resamples": resamples}
-    margins = tuple(margin(lives, name, measures, **how) for name in told)
+    effects = tuple(factor_effect(lives, name, measures, **how) for name in told)
     everyone = np.ones(table.num_rows, dtype=bool)
-    sampled = any(not each.matched and not each.confounded for each in margins)
+    sampled = any(not each.matched and not each.confounded for each in effects)
     sets = sets_of(lives.number, lives.case, None if sampled else lives.case)
-    comparisons = [one for each in margins for one in each.comparisons]
+    comparisons = [one for each in effects for one in each.comparisons]
     overall = level(lives, everyone, ("all",), sets, measures, **how)
     died = overall.summary.alive < overall.summary.lives
     both = interactions(lives, told, **how) if died else ()
@@ -85,8 +84,8 @@ def find(
         _by_behaviour(table, sets, seed, resamples),
         tuple(varying),
         _cases(lives, varying, measures, seed, resamples),
-        margins,
-        tuple(holm([each.test.p for each in margins]).tolist()),
+        effects,
+        tuple(holm([each.test.p for each in effects]).tolist()),
         tuple(holm([one.test.p for one in comparisons]).tolist()),
         both,
         _both_scales([(each.differences.p, each.ratios.p) for each in both]),
@@ -141,3 +140,20 @@ def _cases(
         )
         for code in np.argsort(first)
     )
+
+
+def holm(p: Sequence[float]) -> NDArray[np.float64]:
+    """Holm's (1979) correction of the p values of n tests: [n].
+
+    Whoever calls those below a level alike errs in any of the n tests no more often than that.
+    The smallest p counts n times, the next n - 1 times, and none less than one before it. It holds
+    however the tests depend on each other. NaN, a test that could not be made, stays NaN and does
+    not count.
+    """
+    given = np.asarray(p, dtype=np.float64)
+    corrected = np.full(given.shape, np.nan)
+    made = np.flatnonzero(~np.isnan(given))
+    order = made[np.argsort(given[made], kind="stable")]
+    times = np.arange(len(order), 0, -1)
+    corrected[order] = np.minimum(1.0, np.maximum.accumulate(times * given[order]))
+    return corrected

@@ -1,4 +1,4 @@
-"""Reading a table of lives: its cells, its lifespans, and which lives share their luck.
+"""Reading a table of lives: its cells and its lifespans.
 
 A lives table has a row per life, with the columns `world`, `agent`, `life`, `seed`, `lifespan`
 (steps), `censored` (alive at the cap) and what was counted in that life.
@@ -74,20 +74,3 @@ def restriction(tables: Sequence[pa.Table]) -> float:
     """The step up to which every life of all `tables` was watched; infinite if all died."""
     seen = (spans.steps[spans.censored] for spans in map(lifespans, tables))
     return min((float(steps.min()) for steps in seen if steps.size), default=float("inf"))
-
-
-def restricted(tables: Sequence[pa.Table]) -> tuple[list[NDArray[np.float64]], bool]:
-    """Lifespans cut at the common `restriction`, and whether they are paired.
-
-    Cut there, every one of them is known in full, so that plain means estimate restricted mean
-    lifespans. They are paired, and put into one order, if the same pairs of `seed` and `life`
-    occur once in each table: such lives met the same luck.
-    """
-    cap = restriction(tables)
-    spans = [np.minimum(lifespans(table).steps, cap) for table in tables]
-    luck = [list(zip(*(column(t, n).tolist() for n in ("seed", "life")), strict=True))
-            for t in tables]  # fmt: skip
-    if any(len(set(keys)) < len(keys) or set(keys) != set(luck[0]) for keys in luck):
-        return spans, False
-    orders = [sorted(range(len(keys)), key=keys.__getitem__) for keys in luck]
-    return [span[order] for span, order in zip(spans, orders, strict=True)], True

@@ -10,10 +10,11 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from scipy import stats
 
+from animat.statistics.claims import CLAIMS, EFFECTS, RATIOS
 from animat.statistics.estimates import LEVEL, UNKNOWN, Estimate, share
 from animat.statistics.lives import column
 from animat.statistics.readings import Readings, codes, comparable
-from animat.statistics.universes import CLAIMS, EFFECTS, RATIOS, holds
+from animat.statistics.universes import holds
 
 FEWEST = 2
 """Universes that a value must have to be compared."""

@@ -1,6 +1,6 @@
-"""How well readings foretell whether a claim holds: models of scikit-learn, cross-validated.
+"""How well readings predict whether a claim holds: models of scikit-learn, cross-validated.
 
-If a model that knows pairs of readings foretells more than one that adds up single readings, then
+If a model that knows pairs of readings predicts more than one that adds up single readings, then
 readings matter to each other. The tree says it in rules. Needs the extra `animat[multiverse]`.
 """
 
@@ -15,9 +15,10 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from scipy import stats
 
+from animat.statistics.claims import CLAIMS
 from animat.statistics.estimates import LEVEL, Estimate, share
 from animat.statistics.readings import MOST_UNIVERSES, Readings, codes, some_of
-from animat.statistics.universes import CLAIMS, holds
+from animat.statistics.universes import holds
 
 FOLDS = 10
 
@@ -33,8 +34,8 @@ class Rule(NamedTuple):
     share: Estimate
 
 
-class Foretold(NamedTuple):
-    """How often a claim is foretold rightly in universes not learnt from, and the tree's rules.
+class Prediction(NamedTuple):
+    """How often a claim is predicted rightly in universes not learnt from, and the tree's rules.
 
     `always` is the share of the more frequent answer, what one has without any model.
     """
@@ -52,7 +53,7 @@ def available() -> bool:
     return find_spec("sklearn") is not None
 
 
-def foretell(universes: pa.Table, readings: Readings) -> list[Foretold]:
+def predict(universes: pa.Table, readings: Readings) -> list[Prediction]:
     """A logistic model of single readings, one of pairs, and a tree, for every claim.
 
     Claims that hold, or do not, in fewer universes than there are folds are left out: nothing can
@@ -88,7 +89,7 @@ def foretell(universes: pa.Table, readings: Readings) -> list[Foretold]:
         }
         rules = tuple(_rules(tree.fit(had, truth).tree_, had, truth, names))
         always = max(truth.mean(), 1.0 - truth.mean())
-        told.append(Foretold(claim, float(always), **scores, rules=rules))
+        told.append(Prediction(claim, float(always), **scores, rules=rules))
     return told
 
 

@@ -1,7 +1,7 @@
 """Estimates from lives that hang together: which lives are resampled as one, and what follows.
 
-Lives of one number in different cases start in the same pose and meet the same luck; lives of one
-case share its settings. A bootstrap that drew each life alone would be too sure, or not sure
+Lives of one number in different cases share their random numbers; lives of one case share its
+settings. A bootstrap that drew each life alone would be too sure, or not sure
 enough. So sets of lives are drawn: what is fixed by the design stays in each draw as it was.
 """
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from animat.statistics.estimates import LEVEL, RESAMPLES, UNKNOWN, Estimate, Method, of_means
+from animat.statistics.estimates import LEVEL, RESAMPLES, UNKNOWN, Estimate, of_means
 
 SETS_AT_LEAST = 20
 """Fewer sets than this tell little of how much they differ."""
@@ -20,7 +20,10 @@ SETS_AT_LEAST = 20
 BOOTSTRAPPED_AT_MOST = 1_000
 """More sets than this are not drawn one by one: their means are drawn from the normal law."""
 
-LIVES = "sets of lives, one life of every case in each, as lives of one number share their luck"
+LIVES = (
+    "sets of lives, one life of every case in each, as lives of one number share their random"
+    " numbers"
+)
 COMBINATIONS = "combinations of the other factors, each with all its lives"
 CASES = "cases, each with all its lives"
 
@@ -44,15 +47,15 @@ def paired(seed: NDArray, life: NDArray, case: NDArray[np.int64]) -> bool:
 
 
 def numbers(seed: NDArray, life: NDArray, case: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The number of each of n lives: equal for lives that share their luck.
+    """The number of each of n lives: equal for lives that share their random numbers.
 
-    Where every case has lucks of its own, the first life of each has number 0, and so on:
+    Where every case has random numbers of its own, the first life of each has number 0, and so on:
     independent lives may be put together in any way. All arrays are [n].
     """
-    luck = codes_of(seed, life)
+    drawn = codes_of(seed, life)
     if paired(seed, life, case):
-        return luck
-    lived, place = np.unique(codes_of(case, luck), return_inverse=True)
+        return drawn
+    lived, place = np.unique(codes_of(case, drawn), return_inverse=True)
     first = np.zeros(len(lived), dtype=case.dtype)
     first[place] = case
     return (place - np.searchsorted(first, case)).astype(np.int64)
@@ -77,8 +80,8 @@ def sets_of(
 
     `combination` is that of the other factors where levels of a factor are compared within it, and
     None where the levels were lived in other combinations each. Then the cases themselves are a
-    sample, and they are drawn. Else the design is fixed and luck is drawn, unless there is too
-    little of it.
+    sample, and they are drawn. Else the design is fixed and lives are drawn, unless there are too
+    few of them.
     """
     by_number = _set(number, LIVES)
     others = _set(case, CASES) if combination is None else _set(combination, COMBINATIONS)
@@ -205,8 +208,15 @@ def _of(
     if count < 2:
         value = function(*(float(each.mean()) for each in totals))
         return Estimate(float(value), float("nan"), float("nan"))
-    method: Method | None = "normal" if count > BOOTSTRAPPED_AT_MOST else None
-    return of_means(totals, function, paired=True, seed=seed, resamples=resamples, method=method)
+    if count <= BOOTSTRAPPED_AT_MOST:
+        return of_means(totals, function, seed=seed, resamples=resamples)
+    samples = np.stack(totals)
+    means = samples.mean(axis=1)
+    spread = np.atleast_2d(np.cov(samples)) / count
+    rng = np.random.default_rng(seed)
+    drawn = rng.multivariate_normal(means, spread, resamples, check_valid="ignore", method="eigh")
+    low, high = np.quantile(function(*drawn.T), ((1 - LEVEL) / 2, (1 + LEVEL) / 2))
+    return Estimate(float(function(*means)), float(low), float(high))
 
 
 def _totals(values: Sequence[NDArray[np.float64]], sets: Sets) -> list[NDArray[np.float64]]:

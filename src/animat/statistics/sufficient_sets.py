@@ -1,7 +1,7 @@
 """The smallest sets of readings with which a claim holds nearly everywhere.
 
 A set says of some readings which values they may have; the others are free. It is found in one
-sample of universes, where it may owe its share to luck, and confirmed in another.
+sample of universes, where it may owe its share to chance, and confirmed in another.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ MOST_READINGS = 5
 """How many readings a set fixes at most; with more, too few universes are left to judge by."""
 
 SURELY = 0.85
-"""What the share is to exceed even if the set, the best of so many, owes it to luck."""
+"""What the share is to exceed even if the set, the best of so many, owes it to chance."""
 
 SUPPORT = 40
 """Universes that must be left, however few sets there are."""
@@ -43,7 +43,7 @@ class Condition(NamedTuple):
     values: tuple[str, ...]
 
 
-class SmallestSet(NamedTuple):
+class SufficientSet(NamedTuple):
     """A set of conditions, and in what share of so many universes that meet it the claim holds."""
 
     claim: str
@@ -55,23 +55,23 @@ class SmallestSet(NamedTuple):
 class Confirmation(NamedTuple):
     """What fresh universes say of a set; the verdict is on a share above `NEARLY_ALL`."""
 
-    found: SmallestSet
+    found: SufficientSet
     universes: int
     share: Estimate
     verdict: Verdict
 
 
-def smallest_set(universes: pa.Table, readings: Readings, claim: str) -> SmallestSet | None:
+def sufficient_set(universes: pa.Table, readings: Readings, claim: str) -> SufficientSet | None:
     """The set of fewest conditions with which `claim` holds in `NEARLY_ALL` universes.
 
-    With the best of very many sets that may be luck. So its share must also exceed `SURELY` by a
+    With the best of very many sets that may be chance. So its share must also exceed `SURELY` by a
     test that counts all sets of its size (Bonferroni). Of several of one size the one whose share
     is surest: Wilson's interval begins highest. None if no set of `MOST_READINGS` or fewer does it.
     """
     universes = some_of(universes, MOST_UNIVERSES)
     good_in = holds(universes, claim)
     if _enough(good_in.sum(), np.array(len(good_in)), 1):
-        return SmallestSet(claim, (), len(good_in), share(int(good_in.sum()), len(good_in)))
+        return SufficientSet(claim, (), len(good_in), share(int(good_in.sum()), len(good_in)))
     conditions, met, of = _literals(codes(universes, readings), readings)
     tried = _sets_of_each_size(of)
     sets = np.arange(len(conditions))[:, None]
@@ -92,7 +92,7 @@ def smallest_set(universes: pa.Table, readings: Readings, claim: str) -> Smalles
     return None
 
 
-def confirm(found: SmallestSet, universes: pa.Table) -> Confirmation:
+def confirm(found: SufficientSet, universes: pa.Table) -> Confirmation:
     """Judge a set by universes that meet it and that it was not found in."""
     meets = np.ones(universes.num_rows, dtype=bool)
     for reading, values in found.conditions:
@@ -107,8 +107,8 @@ def _enough(good: NDArray, total: NDArray, tried: float) -> NDArray[np.bool_]:
 
     `tried` is how many sets it might have been the best of.
     """
-    luck = tried * stats.binom.sf(good - 1, total, SURELY)
-    return (total >= SUPPORT) & (good >= NEARLY_ALL * total) & (luck <= 1.0 - LEVEL)
+    chance = tried * stats.binom.sf(good - 1, total, SURELY)
+    return (total >= SUPPORT) & (good >= NEARLY_ALL * total) & (chance <= 1.0 - LEVEL)
 
 
 def _sets_of_each_size(of: NDArray[np.int64]) -> list[float]:
@@ -165,8 +165,8 @@ def _surest(
     sets: NDArray[np.int64],
     good: NDArray[np.int64],
     total: NDArray[np.int64],
-) -> SmallestSet:
+) -> SufficientSet:
     estimates = [share(int(g), int(t)) for g, t in zip(good, total, strict=True)]
     k = max(range(len(estimates)), key=lambda k: (estimates[k].low, -k))
     chosen = tuple(conditions[c] for c in sets[k])
-    return SmallestSet(claim, chosen, int(total[k]), estimates[k])
+    return SufficientSet(claim, chosen, int(total[k]), estimates[k])

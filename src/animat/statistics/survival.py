@@ -15,17 +15,8 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from scipy import stats
 
-from animat.statistics.estimates import (
-    LEVEL,
-    RESAMPLES,
-    UNKNOWN,
-    Estimate,
-    Method,
-    mean,
-    ratio_of_means,
-    share,
-)
-from animat.statistics.lives import CELL, cells, column, lifespans, restricted, restriction
+from animat.statistics.estimates import LEVEL, RESAMPLES, UNKNOWN, Estimate, mean, of_means, share
+from animat.statistics.lives import CELL, cells, column, lifespans, restriction
 
 ALIVE = "alive at the cap"
 
@@ -125,30 +116,10 @@ def logrank(one: pa.Table, other: pa.Table) -> LogRank:
     return LogRank(float(result.statistic), float(result.pvalue))
 
 
-def mean_lifespan(
-    table: pa.Table, *, seed: int = 0, resamples: int = RESAMPLES, method: Method | None = None
-) -> Estimate:
+def mean_lifespan(table: pa.Table, *, seed: int = 0, resamples: int = RESAMPLES) -> Estimate:
     """Mean lifespan in steps, restricted at the cap, with its bootstrap interval."""
-    (steps,), _ = restricted([table])
-    return mean(steps, seed=seed, resamples=resamples, method=method)
-
-
-def lifespan_ratio(
-    numerator: pa.Table,
-    denominator: pa.Table,
-    *,
-    seed: int = 0,
-    resamples: int = RESAMPLES,
-    method: Method | None = None,
-) -> Estimate:
-    """Ratio of two mean lifespans, both restricted at the same step.
-
-    Paired bootstrap if the tables hold lives of the same `seed` and `life`, unpaired if not.
-    """
-    (above, below), paired = restricted([numerator, denominator])
-    return ratio_of_means(
-        above, below, paired=paired, seed=seed, resamples=resamples, method=method
-    )
+    steps = np.minimum(lifespans(table).steps, restriction([table]))
+    return mean(steps, seed=seed, resamples=resamples)
 
 
 def causes(table: pa.Table) -> list[DeathCount]:
@@ -176,9 +147,7 @@ def success_rate(table: pa.Table, *, seed: int = 0, resamples: int = RESAMPLES) 
     acted = acts > 0
     if not acted.any():
         return UNKNOWN
-    return ratio_of_means(
-        successes[acted], acts[acted], paired=True, seed=seed, resamples=resamples
-    )
+    return of_means([successes[acted], acts[acted]], np.divide, seed=seed, resamples=resamples)
 
 
 def stability(table: pa.Table, *, seed: int = 0, resamples: int = RESAMPLES) -> Estimate:

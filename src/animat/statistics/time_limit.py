@@ -6,12 +6,12 @@ import numpy as np
 import pyarrow as pa
 from scipy import stats
 
+from animat.statistics.claims import CLAIMS, RATIOS
 from animat.statistics.estimates import LEVEL, share
 from animat.statistics.lives import column
-from animat.statistics.universes import CLAIMS, RATIOS
 
 
-def cap_effects(short: pa.Table, long: pa.Table) -> pa.Table:
+def time_limit_effects(short: pa.Table, long: pa.Table) -> pa.Table:
     """A row for every claim and ratio of lifespans, over the universes that both tables have.
 
     Columns: `outcome`, `scale`, `universes`, `value`, `low`, `high`, and `to_holds`, `from_holds`.

@@ -15,11 +15,10 @@ from scipy import stats
 
 from animat.statistics.estimates import LEVEL, RESAMPLES, Estimate
 from animat.statistics.factors import Factor
-from animat.statistics.hotelling import hotelling
 from animat.statistics.lives import column
-from animat.statistics.logrank import Significance
 from animat.statistics.resampling import codes_of, ratio_over, sets_of
 from animat.statistics.sample import Sample, other_combinations
+from animat.statistics.significance import Significance, hotelling
 
 
 class Axis(NamedTuple):

@@ -1,46 +1,23 @@
-"""Universes judged: from the lives and the likelihoods of each, its effects and seven verdicts.
-
-Estimates, intervals and verdicts are those of `claims.judge_lifespans` and `judge_learning`, made
-for many universes at once. Lives share their luck within a universe, so that cells are paired.
-"""
+"""Universes judged: from the lives and the likelihoods of each, its effects and seven verdicts."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
 from animat.statistics.claims import (
+    CELLS,
+    CLAIMS,
+    EFFECTS,
+    Learnt,
     Verdict,
-    distance_from_table_1,
-    learning_verdict,
-    lifespan_verdicts,
+    lifespan_effects,
+    over_robots,
+    verdicts,
 )
-from animat.statistics.estimates import RESAMPLES, Estimate
+from animat.statistics.estimates import RESAMPLES, Estimate, Estimates, share
 from animat.statistics.lives import column
-from animat.statistics.universe_intervals import Estimates, bootstrapped_rows
-
-CELLS = (("abundant", "BLIND"), ("abundant", "AF"), ("scarce", "BLIND"), ("scarce", "AF"))
-"""World and agent of the four cells of Experiment 2, in the order of everything here."""
-
-CLAIMS = ("C1", "C2", "C3", "C4", "C5", "C6", "C7")
-
-RATIOS = {
-    "abundant_gain": "AF / BLIND, abundant world",
-    "scarce_gain": "AF / BLIND, scarce world",
-    "worlds_blind": "abundant / scarce, BLIND",
-    "worlds_af": "abundant / scarce, AF",
-}
-"""The effects that are ratios of mean lifespans, in words."""
-
-EFFECTS = {
-    **RATIOS,
-    "gain_difference": "abundant gain - scarce gain",
-    "learning_error": "largest distance of a mean likelihood from Table 1",
-}
-"""All effects: each is a column of a table of universes, with its `_low` and `_high`."""
 
 
 def judge_universes(
@@ -55,29 +32,30 @@ def judge_universes(
     each cell `mean_`, `alive_` (share at the cap) and `success_` (share of acts; null if nobody
     acted), followed by world and agent. Raises ValueError for a universe that lacks something.
     """
-    numbers, order = _in_order(lives)
-    shape = (len(numbers), len(CELLS), -1)
-    spans = column(lives, "lifespan").astype(np.float64)[order].reshape(shape)
-    alive = column(lives, "censored").astype(bool)[order].reshape(shape)
-    _check_cap(spans, alive)
-    effects = _lifespan_effects(spans, seed, resamples)
-    distances = _distances(likelihoods, numbers, seed, resamples)
+    numbers, order = in_order(lives)
+
+    def of_cells(name: str) -> NDArray:
+        return column(lives, name)[order].reshape(len(numbers), len(CELLS), -1)
+
+    spans, alive = of_cells("lifespan").astype(np.float64), of_cells("censored").astype(bool)
+    effects = lifespan_effects(spans, alive, seed=seed, resamples=resamples)
+    distances = over_robots(Learnt(likelihoods, numbers).away, seed, resamples)
     worst = distances.value.argmax(axis=1)[:, None]
-    effects["learning_error"] = Estimates(
-        *(np.take_along_axis(part, worst, axis=1)[:, 0] for part in distances)
-    )
+    errors = (np.take_along_axis(part, worst, axis=1)[:, 0] for part in distances)
     columns: dict[str, object] = {"universe": numbers}
-    for name, estimates in effects.items():
+    for name, estimates in {**effects, "learning_error": Estimates(*errors)}.items():
         for part, values in zip(("", "_low", "_high"), estimates, strict=True):
             columns[name + part] = values
-    columns |= _verdicts(effects)
-    columns["C7"] = [
-        learning_verdict(Estimate(*pair) for pair in zip(*parts, strict=True))
-        for parts in zip(*distances, strict=True)
+    judged = [
+        verdicts(
+            {name: each.at(u) for name, each in effects.items()},
+            map(Estimate, *(part[u] for part in distances)),
+        )
+        for u in range(len(numbers))
     ]
-    acts, successes = (column(lives, name)[order].reshape(shape) for name in ("acts", "successes"))
+    columns |= {claim: [one[claim] for one in judged] for claim in CLAIMS}
     with np.errstate(invalid="ignore"):
-        rates = successes.sum(axis=2) / acts.sum(axis=2)
+        rates = of_cells("successes").sum(axis=2) / of_cells("acts").sum(axis=2)
     for number, (world, agent) in enumerate(CELLS):
         columns[f"mean_{world}_{agent}"] = spans[:, number].mean(axis=1)
         columns[f"alive_{world}_{agent}"] = alive[:, number].mean(axis=1)
@@ -96,12 +74,10 @@ def verdicts_by_value(universes: pa.Table) -> dict[str, list[Verdict]]:
 
     Undecided is then only what lies on a border, such as a ratio of just 1.
     """
-    effects = {name: Estimates(*[column(universes, name)] * 3) for name in EFFECTS}
-    error = effects["learning_error"]
-    return {
-        **_verdicts(effects),
-        "C7": [learning_verdict([error.at(u)]) for u in range(len(error.value))],
-    }
+    values = zip(*(column(universes, name).tolist() for name in EFFECTS), strict=True)
+    exact = [dict(zip(EFFECTS, (Estimate(v, v, v) for v in row), strict=True)) for row in values]
+    judged = [verdicts(one, [one["learning_error"]]) for one in exact]
+    return {claim: [one[claim] for one in judged] for claim in CLAIMS}
 
 
 def deaths(lives: pa.Table) -> pa.Table:
@@ -123,8 +99,11 @@ def complete(lives: pa.Table, likelihoods: pa.Table, lives_a_cell: int) -> NDArr
     return np.intersect1d(universe[rows == len(CELLS) * lives_a_cell], there)
 
 
-def _in_order(lives: pa.Table) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The universes, and the order of rows that makes them [universe, cell, life]."""
+def in_order(lives: pa.Table) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The universes, and the order of rows that makes them [universe, cell, life].
+
+    Raises ValueError unless every universe has the same lives in its four cells, and no others.
+    """
     universe, life = (column(lives, name).astype(np.int64) for name in ("universe", "life"))
     world, agent = column(lives, "world"), column(lives, "agent")
     cell = np.full(len(universe), -1)
@@ -145,75 +124,38 @@ def _in_order(lives: pa.Table) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return numbers, order
 
 
-def _check_cap(spans: NDArray[np.float64], alive: NDArray[np.bool_]) -> None:
-    """Means of lives cut at different steps say nothing together."""
-    if alive.any() and spans[alive].min() < spans.max():
-        raise ValueError("the lives of all universes must have one cap")
-
-
-def _lifespan_effects(
-    spans: NDArray[np.float64], seed: int, resamples: int
-) -> dict[str, Estimates]:
-    """From lifespans [U, 4, n] the effects that are made of mean lifespans."""
-    rich_blind, rich_af, poor_blind, poor_af = (spans[:, cell] for cell in range(len(CELLS)))
-    pairs = [(rich_af, rich_blind), (poor_af, poor_blind)]
-    pairs += [(rich_blind, poor_blind), (rich_af, poor_af)]
-    effects = {
-        name: bootstrapped_rows(pair, _ratio, seed=seed, resamples=resamples)
-        for name, pair in zip(RATIOS, pairs, strict=True)
-    }
-    effects["gain_difference"] = bootstrapped_rows(
-        [rich_af, rich_blind, poor_af, poor_blind], _difference, seed=seed, resamples=resamples
-    )
-    return effects
-
-
-def _ratio(numerator, denominator):
-    return numerator / denominator
-
-
-def _difference(a, b, c, d):
-    return a / b - c / d
-
-
-def _itself(mean):
-    return mean
-
-
-def _distances(
-    likelihoods: pa.Table, numbers: NDArray[np.int64], seed: int, resamples: int
-) -> Estimates:
-    """The mean distance from Table 1 of every network and object, arrays [U, pairs]."""
-    keys = [column(likelihoods, name) for name in ("robot", "object", "network", "universe")]
-    order = np.lexsort([np.unique(key, return_inverse=True)[1] for key in keys])
-    robots, things, networks, universes = (len(np.unique(key)) for key in keys)
-    shape = (universes, networks * things, robots)
-    there = set(zip(*(key.tolist() for key in keys), strict=True))
-    if not np.array_equal(np.unique(keys[-1]), numbers):
-        raise ValueError("lives and likelihoods are of different universes")
-    if len(order) != np.prod(shape) or len(there) != len(order):
-        raise ValueError("every universe needs one likelihood a robot, network and object")
-    away = distance_from_table_1(likelihoods)[order].reshape(-1, robots)
-    estimates = bootstrapped_rows([away], _itself, seed=seed, resamples=resamples)
-    return Estimates(*(part.reshape(shape[:2]) for part in estimates))
-
-
-def _verdicts(effects: Mapping[str, Estimates]) -> dict[str, list[Verdict]]:
-    """The verdicts on C1 to C6 in every universe."""
-    judged: dict[str, list[Verdict]] = {name: [] for name in CLAIMS[:-1]}
-    for u in range(len(effects["abundant_gain"].value)):
-        verdicts = lifespan_verdicts(
-            effects["abundant_gain"].at(u),
-            effects["scarce_gain"].at(u),
-            [effects["worlds_blind"].at(u), effects["worlds_af"].at(u)],
-            effects["gain_difference"].at(u),
-        )
-        for name, verdict in verdicts.items():
-            judged[name].append(verdict)
-    return judged
-
-
 def _plain(table: pa.Table, name: str) -> pa.ChunkedArray:
     """A column without its dictionary, whose batches may differ."""
     values = table.column(name)
     return values.cast(values.type.value_type) if pa.types.is_dictionary(values.type) else values
+
+
+VERDICTS = ("holds", "undecided", "fails")
+
+
+def verdict_shares(universes: pa.Table) -> pa.Table:
+    """For each claim and verdict the share of universes with Wilson's interval.
+
+    Columns: `claim`, `verdict`, `universes`, `share`, `low`, `high`, and `share_by_value`: the
+    share if every universe were judged by its estimates alone, as if they had no error. Many
+    lives would turn the shares into these, if the estimates are not biased.
+    """
+    by_value = verdicts_by_value(universes)
+    rows = []
+    for claim in CLAIMS:
+        judged = column(universes, claim)
+        for verdict in VERDICTS:
+            count = int(np.sum(judged == verdict))
+            value, low, high = share(count, len(judged))
+            rows.append(
+                {
+                    "claim": claim,
+                    "verdict": verdict,
+                    "universes": count,
+                    "share": value,
+                    "low": low,
+                    "high": high,
+                    "share_by_value": by_value[claim].count(verdict) / len(judged),
+                }
+            )
+    return pa.Table.from_pylist(rows)

@@ -10,14 +10,19 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 import pytest
 
-from animat.files.checksummed_table import content_of, seal_of
 from animat.life.life import live
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
 from animat.study.execute.shard import live_part
 from animat.study.plan.numbering import Part
 from animat.study.plan.plan import plan_of
-from animat.study.plan.shard import classes_needed, file_names, part_identity
+from animat.study.plan.shard import (
+    classes_needed,
+    file_names,
+    part_identity,
+    problem_of,
+    shard_header,
+)
 from animat.study.plan.training import networks_of
 from animat.world.objects import TABLE_1
 from animat.world.world import World
@@ -106,7 +111,7 @@ def test_a_part_is_the_same_bytes_again_and_in_a_plan_of_its_own(small, taught):
         assert list(one.files)[-1] == part.file
 
 
-def test_every_file_is_sealed_with_the_identity_of_its_lives(small, taught, tmp_path):
+def test_every_file_is_written_with_the_identity_of_its_lives(small, taught, tmp_path):
     _, networks = taught
     identities = set()
     for part in small.all_parts():
@@ -115,11 +120,10 @@ def test_every_file_is_sealed_with_the_identity_of_its_lives(small, taught, tmp_
         for number, content in enumerate(made.files.values()):
             path = tmp_path / f"{number}.parquet"
             path.write_bytes(content)
-            seal = seal_of(path)
-            assert seal is not None
-            assert seal.identity == part_identity(small, part)
-            assert seal.content == content_of(path)
-        assert (seal.rows, seal.steps, seal.failed) == (made.lives, made.steps, made.failed)
+            said = shard_header(path)
+            assert said.identity == part_identity(small, part)
+            assert problem_of(path, said.identity, said.rows) is None
+        assert (said.rows, said.steps, said.failed) == (made.lives, made.steps, made.failed)
     assert len(identities) == 3
 
 

@@ -142,7 +142,7 @@ def test_a_torn_part_is_not_counted_and_not_read(finished, tmp_path):
     path.write_bytes(path.read_bytes()[:-9])
     results = Results(directory)
     assert results.progress == (8, 16)
-    with pytest.raises(SettingsError, match=r"part-000000\.parquet: is torn; take it away"):
+    with pytest.raises(SettingsError, match=r"part-000000\.parquet: is cut short"):
         results.lives()
 
 
@@ -156,7 +156,7 @@ def test_a_file_that_cannot_be_read_to_its_end_is_told_of(finished, tmp_path):
     results = Results(directory)
     assert results.progress == (16, 16)
     for read in (results.lives, results.teachers, results.traces, results.curves):
-        with pytest.raises(SettingsError, match=r"-000000\.parquet: (has changed|is torn)"):
+        with pytest.raises(SettingsError, match=r"-000000\.parquet: is (altered|damaged)"):
             read()
 
 

@@ -8,11 +8,10 @@ from __future__ import annotations
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from animat.files.checksummed_table import sealed
 from animat.study.plan.columns import joined, schema
 from animat.study.plan.numbering import Part, Piece
 from animat.study.plan.plan import Plan
-from animat.study.plan.shard import Made, file_names, part_identity
+from animat.study.plan.shard import Made, file_names, part_identity, shard_file
 from animat.study.store.results import Results
 
 
@@ -34,7 +33,7 @@ def borrowed(plan: Plan, part: Part, lender: Results) -> Made | None:
         steps += int(lives["lifespan"].to_numpy().sum())
         tables.append(_as_teachers(lives, plan.classes[piece.place].identity, wanted))
     table = joined(tables)
-    content = sealed([table], wanted, part_identity(plan, part), steps)
+    content = shard_file([table], wanted, part_identity(plan, part), steps)
     return Made({part.file: content}, table.num_rows, steps, 0)
 
 

@@ -105,8 +105,8 @@ class _Run:
         self.measured = 0
         self.tally = Tally(self.plan.numbering, self.plan.shares)
         for part in self.plan.all_parts():
-            if (seal := store.finished(part)) is not None:
-                self.tally.add(part, seal.steps, seal.failed)
+            if (said := store.finished(part)) is not None:
+                self.tally.add(part, said.steps, said.failed)
         self.order = Order(self.plan, self.tally.finished)
         self.networks = lru_cache(NETWORKS_KEPT)(store.networks)
 

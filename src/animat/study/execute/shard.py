@@ -15,7 +15,6 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from animat.files.checksummed_table import sealed
 from animat.life.batch import EPISODES, Batch, BatchResult
 from animat.life.life import TraceChoice
 from animat.study.execute.traces import Traced
@@ -29,7 +28,7 @@ from animat.study.plan.columns import (
 )
 from animat.study.plan.numbering import Kind, Part, Piece
 from animat.study.plan.plan import Plan, plan_of
-from animat.study.plan.shard import Made, file_names, part_identity, recorded
+from animat.study.plan.shard import Made, file_names, part_identity, recorded, shard_file
 
 Networks = Mapping[int, NDArray[np.float64]]
 """By class of teachers, the weights [robots, B, W] of each robot; NaN of one that failed."""
@@ -66,12 +65,12 @@ def live_part(
     for path in file_names(plan, part):
         if path.startswith("curves/"):
             curves = _curves(plan, part.kind, lived)
-            files[path] = sealed([curves], curves.schema, identity)
+            files[path] = shard_file([curves], curves.schema, identity)
         elif path.startswith("traces/"):
-            files[path] = sealed(*_traces(plan, lived), identity)
+            files[path] = shard_file(*_traces(plan, lived), identity)
         else:
             table = table_of(plan, part.kind, lived)
-            files[path] = sealed([table], table.schema, identity, steps, failed)
+            files[path] = shard_file([table], table.schema, identity, steps, failed)
     return Made(files, plan.numbering[part.kind].rows(part.number), steps, failed)
 
 

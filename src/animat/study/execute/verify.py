@@ -1,7 +1,7 @@
 """Whether a results directory still holds what was lived, and whether that was right.
 
-Every part is read and its hash taken again, which finds whatever has changed since; and some lives,
-spread over all, are lived again, which finds what was wrong from the beginning.
+Every part is read and its checksums taken again, which finds whatever has changed since; and some
+lives, spread over all, are simulated again, which finds what was wrong from the beginning.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from animat.files.checksummed_table import content, read_parquet, wrong_with
+from animat.files.checksummed import read_parquet
 from animat.files.settings import SettingsError
 from animat.life.engine import ENGINE
 from animat.progress import Telling
@@ -21,7 +21,7 @@ from animat.study.execute.shard import live_pieces, table_of
 from animat.study.plan.columns import schema
 from animat.study.plan.numbering import KINDS, Kind, Part, Piece
 from animat.study.plan.plan import Plan, plan_of
-from animat.study.plan.shard import classes_needed, file_names, part_identity
+from animat.study.plan.shard import classes_needed, file_names, part_identity, problem_of
 from animat.study.plan.training import read_networks
 from animat.study.store.manifest import (
     CASES,
@@ -129,7 +129,7 @@ def _read_again(directory: Path, plan: Plan, part: Part) -> list[str] | None:
 
 def _wrong(directory: Path, plan: Plan, part: Part) -> Iterator[str]:
     identity = part_identity(plan, part)
-    found = (wrong_with(directory / name, identity) for name in file_names(plan, part))
+    found = (problem_of(directory / name, identity) for name in file_names(plan, part))
     yield from filter(None, found)
 
 
@@ -178,6 +178,7 @@ def _life_at(pieces: list[Piece], row: int) -> Piece:
 
 
 def _differ(now: pa.Table, then: pa.Table, name: str) -> bool:
-    return name not in then.column_names or content(now.select([name])) != content(
-        then.select([name])
+    """Whether two tables differ in a column; texts of numbers tell -0 from 0, and NaN is NaN."""
+    return name not in then.column_names or str(now[name].to_pylist()) != str(
+        then[name].to_pylist()
     )

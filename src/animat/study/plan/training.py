@@ -9,10 +9,10 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
-from animat.files.checksummed_table import read_parquet, wrong_with
+from animat.files.checksummed import read_parquet
 from animat.files.settings import SettingsError
 from animat.study.plan.plan import Plan, world_of
-from animat.study.plan.shard import part_identity
+from animat.study.plan.shard import part_identity, problem_of
 
 
 def read_networks(directory: Path, plan: Plan, place: int) -> NDArray[np.float64]:
@@ -21,7 +21,7 @@ def read_networks(directory: Path, plan: Plan, place: int) -> NDArray[np.float64
     They are NaN for robots that failed. Raises SettingsError where a file is not as it was written.
     """
     parts = {directory / part.file: part for part in plan.parts_of_class(place)}
-    wrong = [wrong_with(file, part_identity(plan, part)) for file, part in parts.items()]
+    wrong = [problem_of(file, part_identity(plan, part)) for file, part in parts.items()]
     if any(wrong):
         raise SettingsError(*filter(None, wrong))
     return networks_of(plan, place, pa.concat_tables(read_parquet(file) for file in parts))

@@ -1,8 +1,8 @@
 """Whether files of results are as they were written, and where they belong.
 
-Whoever reads results must not tell of what a disk has changed. The hash of every file is in it; and
-what it has to hold follows from the study, the cases and the numbering, without the functions of a
-user's that `animat verify` needs to live anything again.
+Whoever reads results must not report what a disk has changed. Every file has its checksums in it;
+and what it has to hold follows from the study, the cases and the numbering, without the custom
+functions that `animat verify` needs to simulate anything again.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from animat.files.checksummed_table import LIVED_AGAIN, read_parquet, wrong_with
+from animat.files.checksummed import read_parquet
 from animat.files.settings import SettingsError
 from animat.study.file.cases import cases as cases_of
 from animat.study.file.study import Study
 from animat.study.plan.numbering import Kind, Numbering, Part
 from animat.study.plan.plan import case_table
-from animat.study.plan.shard import identity_of
+from animat.study.plan.shard import RUN_AGAIN, identity_of, problem_of
 from animat.study.store.manifest import CASES, COLUMNS, WRITTEN_ANEW
 
 Stamp = tuple[int, int]
@@ -73,8 +73,8 @@ class Intact:
         try:
             identity = identity_of(self.engine, self.study, part, list(self._lived_in(part)))
         except (OSError, KeyError, IndexError, pa.ArrowException):
-            return f"{own}: is torn; {LIVED_AGAIN}"
-        return wrong_with(file, identity, rows, unread=unread)
+            return f"{own}: is damaged; {RUN_AGAIN}"
+        return problem_of(file, identity, rows, unread=unread)
 
     def _lived_in(self, part: Part) -> Iterator[list[Any]]:
         """Yield who lived in a part, piece by piece; of robots that teach only its file knows."""

@@ -19,7 +19,7 @@ import pyarrow.parquet as pq
 from pydantic import BaseModel, Field, PositiveInt
 
 from animat.files.atomic import sync_directory, write_whole
-from animat.files.checksummed_table import read_parquet
+from animat.files.checksummed import read_parquet
 from animat.files.provenance import provenance
 from animat.files.settings import SettingsError, opened
 from animat.life.engine import ENGINE

@@ -22,12 +22,13 @@ from pydantic import ValidationError
 
 from animat.files import arguments
 from animat.files.arguments import MOST_63, instance, sequence, whole
-from animat.files.checksummed_table import Seal, read_parquet, seal_of
+from animat.files.checksummed import read_parquet
 from animat.files.settings import SettingsError, explain, nearest, parse_text, validated
 from animat.files.tables import to_pandas
 from animat.files.validation_errors import brief
 from animat.study.file.study import Study
 from animat.study.plan.numbering import KINDS, Kind, Numbering, Part
+from animat.study.plan.shard import ShardHeader, stored
 from animat.study.store.intact import Intact
 from animat.study.store.manifest import read_cases, read_columns, read_manifest, read_text
 from animat.study.store.tally import Tally
@@ -110,8 +111,8 @@ class Results:
         _, shares = np.unique(same, return_counts=True)
         tally = Tally(self.numbering, shares.tolist())
         for kind in KINDS:
-            for part, seal in self._finished(kind).items():
-                tally.add(part, seal.steps, seal.failed)
+            for part, said in self._finished(kind).items():
+                tally.add(part, said.steps, said.failed)
         return tally
 
     def unusable(self) -> list[str]:
@@ -205,13 +206,13 @@ class Results:
             told.append(f"case {row['case']}{factors}, life {row['life']}: {row['error']}")
         return told
 
-    def _finished(self, kind: Kind) -> dict[Part, Seal]:
-        """Return the parts that are there, with their seals; what is torn or no part is not."""
+    def _finished(self, kind: Kind) -> dict[Part, ShardHeader]:
+        """Return the parts that are there, with their headers; damaged files are left out."""
         found = {}
         for part in self._there(kind):
-            seal = seal_of(self.directory / part.file)
-            if seal is not None and seal.rows == self.numbering[kind].rows(part.number):
-                found[part] = seal
+            said = stored(self.directory / part.file)
+            if said is not None and said.rows == self.numbering[kind].rows(part.number):
+                found[part] = said
         return found
 
     def _there(self, kind: Kind) -> Iterator[Part]:

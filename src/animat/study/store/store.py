@@ -17,12 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animat.files.atomic import RunError, sync_directory, unwritable, write_whole
-from animat.files.checksummed_table import OTHERS, Seal, seal_of
 from animat.files.lock import Holder, hold
 from animat.files.settings import SettingsError
 from animat.study.plan.numbering import Part
 from animat.study.plan.plan import Plan
-from animat.study.plan.shard import Made, file_names, part_identity
+from animat.study.plan.shard import OTHERS, Made, ShardHeader, file_names, part_identity, stored
 from animat.study.plan.training import read_networks
 from animat.study.store.log import Log, logging_to
 from animat.study.store.manifest import CASES, FOLDERS, MANIFEST, STUDY, begin
@@ -46,25 +45,25 @@ class Store:
     log: Log
     dead: Holder | None
 
-    def finished(self, part: Part) -> Seal | None:
-        """Return the seal of a part that is finished; None for one that is not, or is torn.
+    def finished(self, part: Part) -> ShardHeader | None:
+        """Return the header of a part that is finished; None for one that is not, or is damaged.
 
         Raises SettingsError for a part of other lives.
         """
         wanted = part_identity(self.plan, part)
-        seal = None
+        said = None
         for name in file_names(self.plan, part):
             path = self.directory / name
-            seal = seal_of(path)
-            if seal is None:
+            said = stored(path)
+            if said is None:
                 if path.exists():
                     if not path.is_file():
                         raise SettingsError(f"{path}: is no file; take it away")
                     self.note("torn", file=name)
                 return None
-            if seal.identity != wanted:
+            if said.identity != wanted:
                 raise SettingsError(f"{path}: {OTHERS}")
-        return seal
+        return said
 
     def put(self, part: Part, made: Made) -> None:
         """Write the files of a part. Raises StoreError."""
