@@ -101,9 +101,7 @@ def do(which, state, scratch, mind, robot, raster, present, functions, seed, lif
     elif which == SENSING:
         sense(state.x + 0.0, state.y + 0.0, state, scratch, robot, raster, present)
     elif which == LOOKING:
-        scratch.site = met_site(
-            state, robot.radius + mind.encounter_range, Scene(raster, present)
-        )
+        scratch.site = met_site(state, robot.radius + mind.encounter_range, Scene(raster, present))
     elif which == WANDERING:
         left, right = behaviours.wander(
             mind.wander,
