@@ -18,7 +18,7 @@ from animat.life.summary import summary
 from animat.life.trace import ROW, table
 from animat.mind.mind import Mind
 from animat.names import KEPT, LIKELIHOOD, LIVES, MARKS, MODES, OF_A_STUDY, TRACE, spelled
-from animat.robot.khepera import SENSORS
+from animat.robot.khepera import Khepera
 from animat.study.file.cases import cases
 from animat.study.file.design import Design
 from animat.study.file.settings import CaseSettings, WorldChoice
@@ -48,7 +48,7 @@ def world_of(types) -> World:
 
 def columns(mind: Mind, world: World) -> tuple[list[str], list[str]]:
     """Return the columns of a trace, and of a table of lives."""
-    counts = counts_of(mind, len(world.feature_names), SENSORS)
+    counts = counts_of(mind, len(world.feature_names), len(Khepera().sensors))
     states = born(counts, checked_parameters(mind, world), 0, None)
     setting: Any = SimpleNamespace(mind=mind, world=world)
     rows = np.zeros(0, ROW.dtype(counts._asdict()))

@@ -33,7 +33,8 @@ from animat.mind.agents import AGENTS
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
 from animat.mind.physiology import PHYSIOLOGIES
-from animat.robot.khepera import MODELS, SENSORS, Khepera, Sensor
+from animat.robot.khepera import Khepera, Sensor
+from animat.robot.parameters import MODELS
 from animat.world.arena import Arena
 from animat.world.layout import Layout, Placement
 from animat.world.world import World
@@ -131,7 +132,7 @@ def cases() -> Iterator[Case]:
     for name, reading in READINGS.items():
         mind = Mind(**{"agent": "LEARNING", **USUAL, **reading})
         yield Case(name, True, SMALL, mind, Khepera())
-    ahead = Khepera(sensors=(Sensor(x=24.5, y=0.0, direction=0.0),) * SENSORS)
+    ahead = Khepera(sensors=(Sensor(x=24.5, y=0.0, direction=0.0),) * 8)
     yield Case("grazing the walls", True, SMALL, Mind(**USUAL, death=False), ahead)
     still = Khepera(motor_noise=False, infrared_noise=False)
     yield Case("no noise", True, SMALL, Mind(**USUAL), still)

@@ -23,7 +23,7 @@ from animat.life.scenario import bring_together
 from animat.mind.agents import AGENTS
 from animat.mind.mind import Mind
 from animat.mind.physiology import PHYSIOLOGIES
-from animat.robot.khepera import MODELS
+from animat.robot.parameters import MODELS
 
 from . import golden, processors
 

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from animat.files.settings import SettingsError
-from animat.robot.khepera import LINEAR, MICHEL1996, ROBOT, Khepera
+from animat.robot.khepera import Khepera
+from animat.robot.parameters import LINEAR, MICHEL1996, ROBOT
 
 
 def test_record_holds_settings():
     robot = Khepera().parameters()
-    assert robot.dtype == ROBOT
+    assert robot.dtype == ROBOT.dtype({"N": 8})
     assert (robot.radius, robot.wheel_base, robot.step_mm) == (27.5, 50.0, 0.5)
     assert (robot.max_motor, robot.position_noise, robot.turn_noise) == (10, 0.10, 0.05)
     assert robot.motor_noise

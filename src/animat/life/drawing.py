@@ -13,7 +13,8 @@ from animat.figures.life import life_figure
 from animat.figures.worlds import RobotDrawing, WorldDrawing
 from animat.mind.mind import Drive, Mind
 from animat.numerics.elementary import sine_cosine
-from animat.robot.khepera import REACH, Khepera
+from animat.robot.khepera import Khepera
+from animat.robot.parameters import REACH
 from animat.world.files import WorldFile
 from animat.world.world import World
 

@@ -38,8 +38,11 @@ from animat.numerics.linked import any_custom
 from animat.numerics.streams import MOTORS, SENSORS, bits, uniforms
 from animat.numerics.streams import WANDER as WANDERING
 from animat.robot.collision import collide
-from animat.robot.infrared import is_dark, read_infrared
+from animat.robot.infrared import NOISES, is_dark, read_infrared
 from animat.robot.motion import move
+
+BLOCK = 1 << 48
+"""How far apart the noise of two sensors is addressed: 8 of it are more than a life has steps."""
 
 
 @compiled
@@ -76,9 +79,11 @@ def sense_what_is_looked_at(state, model, scene, key):
 @compiled
 def sense(state, robot, scene, key):
     """Read the infrared sensors where the robot stands."""
-    words = bits(key.seed, key.life, SENSORS, state.step)
-    raster, present = scene.raster, scene.present
-    read_infrared(state.x, state.y, state.heading, robot, raster, present, words, state.readings)
+    raster, present, readings = scene.raster, scene.present, state.readings
+    for first in range(0, len(readings), NOISES):
+        words = bits(key.seed, key.life, SENSORS, state.step + first * BLOCK)
+        x, y, heading = state.x, state.y, state.heading
+        read_infrared(x, y, heading, robot, raster, present, words, readings, first)
 
 
 @compiled

@@ -21,7 +21,6 @@ from animat.mind.mind import Mind
 from animat.names import MODES, TRACE, spelled
 from animat.numerics.compiled import compiled
 from animat.numerics.layout import Field, Layout
-from animat.robot.khepera import SENSORS
 from animat.world.world import World
 
 PLAIN = ("step", "x", "y", "heading", "left", "right", "site", "reward")
@@ -86,7 +85,7 @@ def record_outcome(row, state):
 def table(rows: NDArray[np.void], mind: Mind, world: World) -> pa.Table:
     """Return rows of the kernel as a table, with the names of the mind and of the world."""
     named = {
-        "sensor": map(str, range(SENSORS)),
+        "sensor": map(str, range(rows["readings"].shape[1])),
         "variable": list(mind.resolved_variables()),
         "drive": list(mind.drives),
         "behaviour": list(mind.behaviours),

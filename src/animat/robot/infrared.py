@@ -1,4 +1,4 @@
-"""What the eight infrared sensors read.
+"""What infrared sensors read, however many a body has.
 
 `michel1996` (Michel's Khepera Simulator 2.0) looks at three columns of five points before each
 sensor; `linear` (as in Webots) sends one ray. Both read whole numbers 0..1023, and cut off what is
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from animat.numerics.compiled import compiled
 from animat.numerics.elementary import sine_cosine
-from animat.robot.khepera import LINEAR_REACH, MICHEL1996, SENSORS
+from animat.robot.parameters import LINEAR_REACH, MICHEL1996
 from animat.robot.probe import occupied, room
 from animat.world.raster import Raster
 
@@ -37,6 +37,9 @@ PROBES_CENTRE, PROBES_RADIUS = 31.0, 27.3
 # Past the border of a cell by so much (in cells), a ray is in the next one whatever the rounding.
 NUDGE = 1e-9
 
+NOISES = 8
+"""How many sensors a block of random words has noise for."""
+
 Words = tuple[np.uint64, np.uint64, np.uint64, np.uint64]
 
 
@@ -50,19 +53,21 @@ def read_infrared(
     present: NDArray[np.uint8],
     words: Words,
     readings: NDArray[np.int64],
+    first: int = 0,
 ) -> None:
-    """Write what the sensors read in a pose (mm, mm, rad) to `readings[8]`.
+    """Write what eight sensors from `first` on read in a pose (mm, mm, rad) to `readings` [N].
 
-    `present[S]` tells which sites hold their object. `words` are four random words of 32 bits,
-    one block of the stream SENSORS, and all the noise of a step (see `sensor_noise`).
+    `present[S]` tells which sites hold their object. `words` are four random words of 32 bits, a
+    block of the stream SENSORS, and all the noise of these sensors in a step (see `sensor_noise`).
     """
+    last = min(first + NOISES, len(readings))
     u = x * raster.cells_per_mm + raster.border
     v = y * raster.cells_per_mm + raster.border
     free = room(u, v, raster) - robot.sensor_radius
     if robot.infrared == MICHEL1996:
-        _read_michel1996(u, v, heading, free, robot, raster, present, words, readings)
+        _read_michel1996(u, v, heading, free, robot, raster, present, words, readings, first, last)
     else:
-        _read_linear(u, v, heading, free, robot, raster, present, words, readings)
+        _read_linear(u, v, heading, free, robot, raster, present, words, readings, first, last)
 
 
 @compiled
@@ -107,19 +112,21 @@ def _read_michel1996(
     present: NDArray[np.uint8],
     words: Words,
     readings: NDArray[np.int64],
+    first: int,
+    last: int,
 ) -> None:
-    """Read all sensors of a robot at (u, v), in cells; within `free` mm of each all is free."""
+    """Read sensors of a robot at (u, v), in cells; within `free` mm of each all is free."""
     if free > robot.reach:
-        for sensor in range(SENSORS):
-            readings[sensor] = unlit(sensor_noise(words, sensor), robot)
+        for sensor in range(first, last):
+            readings[sensor] = unlit(sensor_noise(words, sensor - first), robot)
         return
     sine, cosine = sine_cosine(heading)
     cosine *= raster.cells_per_mm  # from here on 1 mm is measured in cells
     sine *= raster.cells_per_mm
-    for sensor in range(SENSORS):
+    for sensor in range(first, last):
         x, y = robot.sensor_x[sensor], robot.sensor_y[sensor]
         ahead_x, ahead_y = robot.sensor_cosine[sensor], robot.sensor_sine[sensor]
-        noise = sensor_noise(words, sensor)
+        noise = sensor_noise(words, sensor - first)
         mid_x, mid_y = x + PROBES_CENTRE * ahead_x, y + PROBES_CENTRE * ahead_y
         mid_u = u + (cosine * mid_x - sine * mid_y)
         mid_v = v + (sine * mid_x + cosine * mid_y)
@@ -262,16 +269,18 @@ def _read_linear(
     present: NDArray[np.uint8],
     words: Words,
     readings: NDArray[np.int64],
+    first: int,
+    last: int,
 ) -> None:
-    """Read all sensors of a robot at (u, v), in cells; within `free` mm of each all is free."""
+    """Read sensors of a robot at (u, v), in cells; within `free` mm of each all is free."""
     if free > robot.reach:
-        for sensor in range(SENSORS):
+        for sensor in range(first, last):
             readings[sensor] = 0
         return
     sine, cosine = sine_cosine(heading)
     cosine *= raster.cells_per_mm
     sine *= raster.cells_per_mm
-    for sensor in range(SENSORS):
+    for sensor in range(first, last):
         x, y = robot.sensor_x[sensor], robot.sensor_y[sensor]
         ahead_x, ahead_y = robot.sensor_cosine[sensor], robot.sensor_sine[sensor]
         distance = free_way(
@@ -283,7 +292,7 @@ def _read_linear(
             raster,
             present,
         )
-        readings[sensor] = linear(distance, sensor_noise(words, sensor), robot)
+        readings[sensor] = linear(distance, sensor_noise(words, sensor - first), robot)
 
 
 @compiled

@@ -17,16 +17,7 @@ from pydantic import Field, model_validator
 from animat.files.settings import Settings
 from animat.numerics.compiled import kernel
 from animat.numerics.elementary import sine_cosine
-from animat.robot.parameters import RING_POINTS, ROBOT
-
-SENSORS = 8
-
-MICHEL1996, LINEAR = 0, 1
-MODELS = {"michel1996": MICHEL1996, "linear": LINEAR}
-
-LINEAR_REACH = 50.0  # mm
-REACH = {"michel1996": 58.0, "linear": LINEAR_REACH}
-"""How far before it a sensor of each model sees anything, in mm."""
+from animat.robot.parameters import MODELS, MOST_SENSORS, REACH, RING_POINTS, ROBOT
 
 
 class Sensor(Settings):
@@ -80,9 +71,9 @@ class Khepera(Settings):
             Sensor(x=-23.0, y=9.5, direction=180.0),
         ),
         strict=False,
-        min_length=SENSORS,
-        max_length=SENSORS,
-        description="the eight infrared sensors, from the left side round the front",
+        min_length=1,
+        max_length=MOST_SENSORS,
+        description="the infrared sensors, those of the Khepera from the left side round the front",
     )
 
     @model_validator(mode="after")

@@ -7,6 +7,14 @@ import numpy as np
 from animat.numerics.layout import Field, Layout
 
 RING_POINTS = 8
+MOST_SENSORS = 64
+
+MICHEL1996, LINEAR = 0, 1
+MODELS = {"michel1996": MICHEL1996, "linear": LINEAR}
+
+LINEAR_REACH = 50.0  # mm
+REACH = {"michel1996": 58.0, "linear": LINEAR_REACH}
+"""How far before it a sensor of each model sees anything, in mm."""
 
 REAL = np.float64
 
