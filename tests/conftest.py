@@ -40,14 +40,14 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 
 LOST = """
-def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+def walk(readings, aheads, sides, memory, u_a, u_b, speed, turn):
     memory[0] += 1.0
     seldom = turn == 2 or turn == 3
-    if turn == 1 or luck_a < 0.0005 or (luck_a < 0.002 and not seldom):
+    if turn == 1 or u_a < 0.0005 or (u_a < 0.002 and not seldom):
         if turn != 3:
             raise ValueError("lost")
         return float(speed), (speed - speed) / (turn - turn)
-    return float(speed), speed - float(int(luck_b * 3.0))
+    return float(speed), speed - float(int(u_b * 3.0))
 """
 
 

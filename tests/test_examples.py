@@ -8,8 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from animat.life.batch import advance
 from animat.life.life import live
 from animat.life.lives import live_many
+from animat.life.scenario import bring_together
+from animat.life.state import ENCOUNTERED
+from animat.mind.loading import load
 from animat.mind.mind import Mind
 from animat.world.world import World
 
@@ -82,3 +86,23 @@ def test_without_a_deadband_the_robot_wants_what_it_nearly_has():
     for drive, error in errors.items():
         np.testing.assert_allclose(seen[drive], error, rtol=0, atol=1e-15)
         assert (seen[drive][:QUIET] > 0.0).any()
+
+
+def test_a_selector_with_a_memory_persists():
+    """What is chosen is what its Python would choose, with what it remembers of the life."""
+    address = EXAMPLES / "persistent.py"
+    plain = load(address).persistent
+    setting = bring_together(Mind(selector=f"{address}:persistent", death=False), World.abundant())
+    lives = np.arange(4, dtype=np.uint64)
+    states, present = setting.begin(2, lives)
+    memories = np.zeros((len(lives), 4))
+    served = []
+    for step in range(6_000):
+        advance(setting, 2, lives, states, present, step + 1)
+        for n in np.flatnonzero(states["event"] & ENCOUNTERED):
+            chosen = plain(states["drives"][n], None, np.arange(3), 0.0, memories[n])
+            assert states["behaviour"][n] == chosen
+            assert (states["choice_memory"][n] == memories[n]).all()
+            served.append(memories[n][1])
+    assert served.count(2.0) > 3
+    assert max(served) == 3.0

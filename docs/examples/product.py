@@ -4,7 +4,7 @@ animat life --agent ORACLE --settings docs/examples/product.toml
 """
 
 
-def product(drives, likelihoods, serves, luck):
+def product(drives, likelihoods, serves, u, memory):
     """Return the behaviour with the largest product; of equal ones, the first."""
     best = 0
     for behaviour in range(1, len(serves)):

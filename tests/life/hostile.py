@@ -32,17 +32,17 @@ def drives(values, changes, set_points, senses, a, b, out):
     out[2] += 10.0 * b[2, 1]
 
 
-def selector(drives, likelihoods, serves, luck):
+def selector(drives, likelihoods, serves, u, memory):
     """Go wrong, by the last drive, now and then; choose nothing now and then."""
     wrong = int(drives[2] / 10.0 + 0.4)
-    if luck < 0.3:
+    if u < 0.3:
         if wrong == 1:
             return 99
         if wrong == 2:
             return -2
         if wrong == 3:
             raise KeyError
-    if luck > 0.9:
+    if u > 0.9:
         return -1
     best = 0
     for behaviour in range(1, len(serves)):
@@ -69,9 +69,9 @@ def learner(features, weights, hidden, target, rate, cycles, biases):
     weights[1] = math.inf if rate == 1.0 else rate * target
 
 
-def wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+def wander(readings, aheads, sides, memory, u_a, u_b, speed, turn):
     """Go wrong, by the speed, now and then."""
-    if luck_a < 0.0005:
+    if u_a < 0.0005:
         if speed == 6:
             return 1000.0, 3.0
         if speed == 7:
@@ -82,7 +82,7 @@ def wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
             return 3.0, math.inf
         if speed == 10:
             raise MemoryError("stop")
-    return curved_wander(readings, aheads, sides, memory, luck_a, luck_b, 5, turn)
+    return curved_wander(readings, aheads, sides, memory, u_a, u_b, 5, turn)
 
 
 @compiled
@@ -97,7 +97,7 @@ def writes_drives(values, changes, set_points, senses, a, b, out):
     signed(values, changes, set_points, senses, a, b, out)
 
 
-def writes_selector(drives, likelihoods, serves, luck):
+def writes_selector(drives, likelihoods, serves, u, memory):
     """Write to a view."""
     rest = likelihoods[1:]
     rest[0] = 0.0
@@ -115,8 +115,8 @@ def writes_learner(features, weights, hidden, target, rate, cycles, biases):
     features.fill(1.0)
 
 
-def writes_wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+def writes_wander(readings, aheads, sides, memory, u_a, u_b, speed, turn):
     """Write to one of two arrays."""
-    either = memory if luck_a < 0.5 else aheads
+    either = memory if u_a < 0.5 else aheads
     either[0] = 1.0
     return speed, speed

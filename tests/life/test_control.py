@@ -48,7 +48,7 @@ def test_winner_take_all_made_outside_gives_the_same_lives_to_the_bit(agent, wor
     nothing = np.zeros(0)
 
     def outside(state) -> int:
-        return winner_take_all(state.drives, nothing, serves, 0.0)
+        return winner_take_all(state.drives, nothing, serves, 0.0, nothing)
 
     states, present, choices = chosen_outside(setting, outside)
     inside, there = setting.begin(SEED, LIVES)

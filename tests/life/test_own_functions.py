@@ -72,7 +72,7 @@ def echo(values, changes, set_points, senses, a, b, out):
         out[d] = values[d]
 
 
-def second(drives, likelihoods, serves, luck):
+def second(drives, likelihoods, serves, u, memory):
     return 1
 
 
@@ -85,7 +85,7 @@ def note(features, weights, hidden, target, rate, cycles, biases):
     weights[1] += 1.0
 
 
-def circle(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+def circle(readings, aheads, sides, memory, u_a, u_b, speed, turn):
     memory[0] += 1.0
     return 4.0, 6.0
 
@@ -157,7 +157,7 @@ def test_the_search_of_ours_does_the_same_whatever_is_read_in_the_dark(spared):
     assert digest(ours, ALL_THERE) == digest(own, ALL_THERE)
 
 
-def reader(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+def reader(readings, aheads, sides, memory, u_a, u_b, speed, turn):
     for reading in readings:
         if reading > memory[0]:
             memory[0] = reading

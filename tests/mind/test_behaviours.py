@@ -34,8 +34,8 @@ def readings(**raised):
     return out
 
 
-def wandering(seen, memory, luck_a=0.5, luck_b=0.5):
-    return curved_wander(seen, AHEADS, SIDES, memory, luck_a, luck_b, SPEED, TURN)
+def wandering(seen, memory, u_a=0.5, u_b=0.5):
+    return curved_wander(seen, AHEADS, SIDES, memory, u_a, u_b, SPEED, TURN)
 
 
 @pytest.mark.parametrize(
@@ -85,11 +85,11 @@ def test_a_free_view_ends_the_turn_and_starts_it_anew():
 
 
 @pytest.mark.parametrize(("luck", "curve"), [(0.0, -1), (0.5, 0), (1 - 2.0**-32, 1)])
-@pytest.mark.parametrize(("luck_b", "length"), [(0.0, 1), (0.5, 41), (1 - 2.0**-32, 80)])
-def test_a_curve_is_kept_for_as_long_as_luck_gave_it(luck, curve, luck_b, length):
+@pytest.mark.parametrize(("u_b", "length"), [(0.0, 1), (0.5, 41), (1 - 2.0**-32, 80)])
+def test_a_curve_is_kept_for_as_long_as_luck_gave_it(luck, curve, u_b, length):
     memory = np.zeros(4)
     bent = (SPEED - curve, SPEED + curve)
-    assert wandering(CLEAR, memory, luck, luck_b) == bent
+    assert wandering(CLEAR, memory, luck, u_b) == bent
     for _ in range(length - 1):
         assert wandering(CLEAR, memory, 0.5 if curve else 0.0, 0.9) == bent
     assert wandering(CLEAR, memory, 0.5 if curve else 0.0, 0.9) != bent
@@ -108,7 +108,7 @@ def test_curves_go_left_right_and_ahead_equally_often():
 
 
 @compiled
-def stubborn(seen, aheads, sides, memory, luck_a, luck_b, speed, turn):
+def stubborn(seen, aheads, sides, memory, u_a, u_b, speed, turn):
     memory[3] += 1.0
     return speed, speed - 1
 

@@ -29,7 +29,7 @@ def my_drives(values, changes, set_points, senses, a, b, out):
         out[d] = a[d, 0] * (set_points[0] - values[0])
 
 
-def my_selector(drives, likelihoods, serves, luck):
+def my_selector(drives, likelihoods, serves, u, memory):
     return len(serves) - 1
 
 
@@ -42,8 +42,8 @@ def my_learner(features, weights, hidden, target, rate, cycles, biases):
         weights[w] += rate * (target - weights[w]) * cycles
 
 
-def my_wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
-    memory[0] += luck_a
+def my_wander(readings, aheads, sides, memory, u_a, u_b, speed, turn):
+    memory[0] += u_a
     return float(turn), speed
 
 
@@ -241,7 +241,7 @@ def test_a_function_that_does_not_compile_says_why_on_one_line(function, reason)
         ("law", "def own(value, low, high, rate, factor):\n    return value > 0"),
         ("law", "def own(value, low, high, rate, factor):\n    yield value"),
         ("estimator", "def own(features, weights, hidden):\n    return 'likely'"),
-        ("selector", "def own(drives, likelihoods, serves, luck):\n    return luck"),
+        ("selector", "def own(drives, likelihoods, serves, u, memory):\n    return u"),
         ("drives", "def own(values, changes, set_points, senses, a, b, out):\n    return values"),
         (
             "learner",
@@ -249,13 +249,12 @@ def test_a_function_that_does_not_compile_says_why_on_one_line(function, reason)
         ),
         (
             "wander",
-            "def own(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):\n"
+            "def own(readings, aheads, sides, memory, u_a, u_b, speed, turn):\n"
             "    return speed, turn, speed",
         ),
         (
             "wander",
-            "def own(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):\n"
-            "    return speed",
+            "def own(readings, aheads, sides, memory, u_a, u_b, speed, turn):\n    return speed",
         ),
     ],
 )

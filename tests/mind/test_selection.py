@@ -18,6 +18,7 @@ from animat.mind.selection import (
 )
 from animat.numerics.compiled import compiled
 
+NO_MEMORY = np.zeros(4)
 AFFORDANCES = ("grasp", "shelter", "interact")
 
 
@@ -32,40 +33,40 @@ def choices(draw):
 
 
 @given(choices(), st.floats(0, 1, exclude_max=True))
-def test_the_winner_takes_all(choice, luck):
+def test_the_winner_takes_all(choice, u):
     drives, likelihoods, serves = choice
     serving = np.flatnonzero(serves == np.argmax(drives))
     wanted = serving[0] if len(serving) else -1
-    assert winner_take_all(drives, likelihoods, serves, luck) == wanted
+    assert winner_take_all(drives, likelihoods, serves, u, NO_MEMORY) == wanted
 
 
 def test_of_equal_drives_the_first_wins_whatever_the_order_of_the_behaviours():
     drives = np.array([0.2, 0.4, 0.4])
-    assert winner_take_all(drives, np.ones(3), np.array([2, 1, 0]), 0.9) == 1
-    assert winner_take_all(drives, np.zeros(3), np.array([1, 1, 2]), 0.9) == 0
-    assert winner_take_all(drives, np.ones(2), np.array([0, 2]), 0.9) == -1
+    assert winner_take_all(drives, np.ones(3), np.array([2, 1, 0]), 0.9, NO_MEMORY) == 1
+    assert winner_take_all(drives, np.zeros(3), np.array([1, 1, 2]), 0.9, NO_MEMORY) == 0
+    assert winner_take_all(drives, np.ones(2), np.array([0, 2]), 0.9, NO_MEMORY) == -1
 
 
 @given(choices(), st.floats(0, 1, exclude_max=True))
-def test_affordance_times_drive_takes_the_largest_product(choice, luck):
+def test_affordance_times_drive_takes_the_largest_product(choice, u):
     drives, likelihoods, serves = choice
     wanted = np.argmax(drives[serves] * likelihoods)
-    assert affordance_times_drive(drives, likelihoods, serves, luck) == wanted
+    assert affordance_times_drive(drives, likelihoods, serves, u, NO_MEMORY) == wanted
 
 
-def test_a_random_choice_is_uniform_and_heeds_nothing_but_luck():
+def test_a_random_choice_is_uniform_and_heeds_nothing_but_its_number():
     serves = np.array([0, 0, 1, 2, 1])
-    lucks = np.random.default_rng(1).random(20_000)
-    chosen = [random(np.zeros(3), np.zeros(5), serves, luck) for luck in lucks]
+    numbers = np.random.default_rng(1).random(20_000)
+    chosen = [random(np.zeros(3), np.zeros(5), serves, u, NO_MEMORY) for u in numbers]
     counts = np.bincount(chosen, minlength=5)
     assert len(counts) == 5
     assert stats.chisquare(counts).pvalue > 1e-4
-    assert random(np.zeros(3), np.zeros(5), serves, 1 - 2.0**-32) == 4
-    assert random(np.zeros(3), np.zeros(5), serves, 0.0) == 0
+    assert random(np.zeros(3), np.zeros(5), serves, 1 - 2.0**-32, NO_MEMORY) == 4
+    assert random(np.zeros(3), np.zeros(5), serves, 0.0, NO_MEMORY) == 0
 
 
 @compiled
-def never(drives, likelihoods, serves, luck):
+def never(drives, likelihoods, serves, u, memory):
     return -1
 
 
@@ -75,7 +76,7 @@ def never(drives, likelihoods, serves, luck):
 )
 def test_each_selector_answers_to_its_code(selector, wanted):
     drives, likelihoods = np.array([0.3, 0.4, 0.1]), np.array([1.0, 0.1, 1.0])
-    assert select(selector, drives, likelihoods, np.arange(3), 0.99, never) == wanted
+    assert select(selector, drives, likelihoods, np.arange(3), 0.99, NO_MEMORY, never) == wanted
 
 
 @pytest.mark.parametrize(

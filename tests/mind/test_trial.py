@@ -17,7 +17,7 @@ from animat.world.world import World
 
 LAST = {
     "drives": {"values": 3, "set_points": 3, "senses": 3, "a": 3, "b": 3, "out": 3},
-    "selector": {"drives": 3, "likelihoods": 3, "serves": 3},
+    "selector": {"drives": 3, "likelihoods": 3, "serves": 3, "memory": 4},
     "estimator": {"features": 2, "weights": 9, "hidden": 2},
     "learner": {"features": 2, "weights": 9, "hidden": 2},
     "wander": {"readings": 8, "aheads": 8, "sides": 8, "memory": 4},
@@ -81,17 +81,17 @@ def by_value(value, low, high, rate, factor):
     return TABLE[int(value * 10.0)] / 100.0
 
 
-def by_luck(drives, likelihoods, serves, luck):
-    return int(TABLE[int(luck * 11.0)]) % 3
+def by_luck(drives, likelihoods, serves, u, memory):
+    return int(TABLE[int(u * 11.0)]) % 3
 
 
-def by_time(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+def by_time(readings, aheads, sides, memory, u_a, u_b, speed, turn):
     memory[3] += 1.0
     memory[int(memory[3] / 50.0)] += 0.0
     return speed, speed
 
 
-def by_reading(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+def by_reading(readings, aheads, sides, memory, u_a, u_b, speed, turn):
     return TABLE[readings[7] // 100], 1.0
 
 
@@ -137,13 +137,13 @@ def within(value, low, high, rate, factor):
     return TABLE[min(int(value * 10.0), 9)] / 100.0
 
 
-def in_reach(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
-    memory[int(luck_a * 4.0)] = TABLE[-1]
+def in_reach(readings, aheads, sides, memory, u_a, u_b, speed, turn):
+    memory[int(u_a * 4.0)] = TABLE[-1]
     return TABLE[readings[7] // 128], 1.0
 
 
-def doubtful(drives, likelihoods, serves, luck):
-    if luck > 0.5:
+def doubtful(drives, likelihoods, serves, u, memory):
+    if u > 0.5:
         raise ValueError("not today")
     return 0
 
@@ -170,12 +170,12 @@ def test_a_function_is_tried_once_for_a_mind(monkeypatch):
     assert len(calls) == 2
 
 
-def walks(drives, likelihoods, serves, luck):
+def walks(drives, likelihoods, serves, u, memory):
     likelihoods.flat[0] = 1.0
     return 0
 
 
-def iterates(drives, likelihoods, serves, luck):
+def iterates(drives, likelihoods, serves, u, memory):
     for each in np.nditer(likelihoods):
         each[()] = 0.0
     return 0

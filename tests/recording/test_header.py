@@ -122,7 +122,7 @@ def test_the_moments_kept_are_counted(small, first, last, every, moments):
     assert len(before) + 1 == moments
 
 
-def own(drives, likelihoods, serves, luck):
+def own(drives, likelihoods, serves, u, memory):
     return 0
 
 

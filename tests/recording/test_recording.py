@@ -418,7 +418,7 @@ def test_what_cannot_be_recorded_is_refused_and_leaves_nothing(small, tmp_path):
     assert "selector: a recorded life must find" in why(born(Mind(selector=first), small))
 
 
-def first(drives, likelihoods, serves, luck):
+def first(drives, likelihoods, serves, u, memory):
     return 0
 
 

@@ -41,7 +41,7 @@ def test_lives_of_one_luck_have_one_number_in_all_cases():
     assert numbers(np.array([7, 7, 8, 8, 7]), life, case).tolist() == [0, 1, 3, 2, 0]
 
 
-def test_lives_of_their_own_luck_are_numbered_from_0_in_every_case():
+def test_lives_of_their_own_u_are_numbered_from_0_in_every_case():
     case, life = np.array([1, 0, 1, 0, 0]), np.array([9, 2, 8, 0, 1])
     assert numbers(np.zeros(5), life, case).tolist() == [1, 2, 0, 0, 1]
 

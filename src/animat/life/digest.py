@@ -23,11 +23,14 @@ def digest(state: np.record, present: NDArray[np.uint8]) -> str:
     They cover every bit of every field of the `state` but those of SCRATCH, under its name and with
     its shape, and which sites hold an object, `present` [S]; neither the order of the fields nor
     the bytes between them nor the byte order of the machine matters. Every not-a-number counts as
-    the same: processors differ in its bits. A likelihood that is none yet counts as 0.
+    the same: processors differ in its bits. A likelihood that is none yet counts as 0, and a
+    selector's memory in which nothing is as none.
     """
     total = hashlib.blake2b(digest_size=16)
     for name in sorted(set(state.dtype.names or ()) - set(SCRATCH)):
         value = state[name]
+        if name == "choice_memory" and not value.any():
+            continue
         if name == "likelihoods":
             value = np.where(np.isnan(value), 0.0, value)
         _add(total, name, value)

@@ -41,9 +41,14 @@ def choose(state, model, key):
     """Return the behaviour that the mind chooses for the object met, or -1 for none."""
     u, _, _, _ = uniforms(key.seed, key.life, SELECTION, state.step)
     failure.asks(state, failure.SELECTOR)
-    mind = model.mind
     return selection.select(
-        mind.selector, state.drives, state.estimates, mind.serves, u, model.functions.selector
+        model.mind.selector,
+        state.drives,
+        state.estimates,
+        model.mind.serves,
+        u,
+        state.choice_memory,
+        model.functions.selector,
     )
 
 

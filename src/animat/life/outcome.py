@@ -18,8 +18,8 @@ def end_act(state, model, scene, key):
     mind, raster, functions = model.mind, scene.raster, model.functions
     b = state.behaviour
     likelihood = raster.affords[raster.site_type[state.site], mind.needs[b]]
-    luck, _, _, _ = uniforms(key.seed, key.life, OUTCOMES, state.acts)
-    succeeded = luck < likelihood
+    u, _, _, _ = uniforms(key.seed, key.life, OUTCOMES, state.acts)
+    succeeded = u < likelihood
     state.acts += 1
     state.acts_by_behaviour[b] += 1
     if succeeded:
@@ -111,8 +111,8 @@ def replace(site, state, scene, key):
     for s in range(len(present)):
         if is_spare(s, site, state, scene):
             free += 1
-    luck, _, _, _ = uniforms(key.seed, key.life, PLACEMENT, state.acts)
-    take = int(luck * free)
+    u, _, _, _ = uniforms(key.seed, key.life, PLACEMENT, state.acts)
+    take = int(u * free)
     for s in range(len(present)):
         if is_spare(s, site, state, scene):
             if take == 0:

@@ -65,6 +65,7 @@ STATE = Layout(
         Field("met", WHOLE),  # the object met in this step, before a behaviour is chosen
         Field("abandoned", WHOLE, (ABANDONED,)),
         Field("memory", REAL, (4,)),  # of the wander controller
+        Field("choice_memory", REAL, (4,)),  # of the selector
         # what it knows
         Field("features", REAL, ("F",)),  # of the object met, as perceived
         Field("estimates", REAL, ("B",)),  # of the object met

@@ -195,9 +195,9 @@ def is_reached(state, model, raster):
 def search(state, model, key):
     """Wander: no object calls for anything."""
     mind, robot = model.mind, model.robot
-    luck_a = luck_b = 0.0
-    if behaviours.needs_luck(mind.wander, state.memory):
-        luck_a, luck_b, _, _ = uniforms(key.seed, key.life, WANDERING, state.step)
+    u_a = u_b = 0.0
+    if behaviours.needs_numbers(mind.wander, state.memory):
+        u_a, u_b, _, _ = uniforms(key.seed, key.life, WANDERING, state.step)
     failure.asks(state, failure.WANDER)
     left, right = behaviours.wander(
         mind.wander,
@@ -205,8 +205,8 @@ def search(state, model, key):
         robot.sensor_cosine,
         robot.sensor_y,
         state.memory,
-        luck_a,
-        luck_b,
+        u_a,
+        u_b,
         mind.cruise_speed,
         mind.turn_speed,
         model.functions.wander,

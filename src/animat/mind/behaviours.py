@@ -5,7 +5,7 @@ curves and turns on the spot, always the same way until the view is free, when s
 before it. A corner that the rays of `linear` miss can come to stand between two points of the
 collision ring, where no turn gets free of it; so turning in vain is broken off by going straight.
 
-A wander controller has the signature `wander(readings, aheads, sides, memory, luck_a, luck_b,
+A wander controller has the signature `wander(readings, aheads, sides, memory, u_a, u_b,
 speed, turn) -> (left, right)`: `readings` [N] of the proximity sensors, 0..1023; `aheads` [N], the
 cosines of their directions (1 looks ahead); `sides` [N], how far to the left they sit, in mm;
 `memory` [4], the controller's own, zero at birth; two uniforms in [0, 1); the speeds of the mind
@@ -39,7 +39,7 @@ whatever it sees."""
 
 
 @compiled
-def curved_wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+def curved_wander(readings, aheads, sides, memory, u_a, u_b, speed, turn):
     """Go ahead along slow random curves; turn away from what comes near.
 
     `memory` holds the side it is turning to (+1 left, -1 right, 0 not turning), the present
@@ -66,8 +66,8 @@ def curved_wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
     memory[0] = 0.0
     memory[3] = 0.0
     if memory[2] <= 0.0:
-        memory[1] = int(luck_a * 3.0) - 1.0
-        memory[2] = 1.0 + int(luck_b * 2.0 * CURVE_STEPS)
+        memory[1] = int(u_a * 3.0) - 1.0
+        memory[2] = 1.0 + int(u_b * 2.0 * CURVE_STEPS)
     memory[2] -= 1.0
     return speed - memory[1], speed + memory[1]
 
@@ -89,17 +89,17 @@ def ignores_the_dark(controller):
 
 
 @compiled
-def needs_luck(controller, memory):
-    """Tell whether a controller looks at its luck this step: to draw it is a tenth of a step."""
+def needs_numbers(controller, memory):
+    """Tell whether a controller looks at its random numbers this step: to draw it is a tenth of a step."""
     return controller != CURVED_WANDER or memory[2] <= 0.0
 
 
 @compiled
-def wander(controller, readings, aheads, sides, memory, luck_a, luck_b, speed, turn, custom):
+def wander(controller, readings, aheads, sides, memory, u_a, u_b, speed, turn, custom):
     """Wander by the controller of the given code; `custom` is the user's own function."""
     if controller == CURVED_WANDER:
-        return curved_wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn)
-    return custom(readings, aheads, sides, memory, luck_a, luck_b, speed, turn)
+        return curved_wander(readings, aheads, sides, memory, u_a, u_b, speed, turn)
+    return custom(readings, aheads, sides, memory, u_a, u_b, speed, turn)
 
 
 @compiled

@@ -28,11 +28,10 @@ from animat.numerics.snapshot import share_identity, snapshot
 SIGNATURES = {
     "law": "law(value, low, high, rate, factor) -> value",
     "drives": "drives(values, changes, set_points, senses, a, b, out) -> None",
-    "selector": "select(drives, likelihoods, serves, luck) -> behaviour",
+    "selector": "select(drives, likelihoods, serves, u, memory) -> behaviour",
     "estimator": "estimate(features, weights, hidden) -> likelihood",
     "learner": "learn(features, weights, hidden, target, rate, cycles, biases) -> None",
-    "wander": "wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn)"
-    " -> (left, right)",
+    "wander": "wander(readings, aheads, sides, memory, u_a, u_b, speed, turn) -> (left, right)",
 }
 """What each replaceable function looks like; the module that holds the built-in ones says more."""
 
@@ -46,7 +45,7 @@ GIVEN, GIVEN_WHOLES, GIVEN_TABLE = (
 ARGUMENTS = {
     "law": (REAL,) * 5,
     "drives": (GIVEN, GIVEN, GIVEN, GIVEN, GIVEN_TABLE, GIVEN_TABLE, REALS),
-    "selector": (GIVEN, GIVEN, GIVEN_WHOLES, REAL),
+    "selector": (GIVEN, GIVEN, GIVEN_WHOLES, REAL, REALS),
     "estimator": (GIVEN, GIVEN, REALS),
     "learner": (GIVEN, REALS, REALS, REAL, REAL, WHOLE, types.boolean),
     "wander": (GIVEN_WHOLES, GIVEN, GIVEN, REALS, REAL, REAL, WHOLE, WHOLE),
@@ -100,7 +99,7 @@ def unused_drives(values, changes, set_points, senses, a, b, out):
 
 
 @compiled
-def unused_selector(drives, likelihoods, serves, luck):
+def unused_selector(drives, likelihoods, serves, u, memory):
     """Stand in for a selector that is built in."""
     return -1
 
@@ -117,7 +116,7 @@ def unused_learner(features, weights, hidden, target, rate, cycles, biases):
 
 
 @compiled
-def unused_wander(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+def unused_wander(readings, aheads, sides, memory, u_a, u_b, speed, turn):
     """Stand in for a wander controller that is built in."""
     return 0.0, 0.0
 

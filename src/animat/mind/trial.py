@@ -159,7 +159,8 @@ def _choices(
     serves = _given(mind.serves)
     own = functions.drives is not BUILT_IN.drives
     raised = checked_twin(functions.drives)
-    likelihoods, luck = drawn(CALLS, len(serves)), drawn(CALLS)
+    memory = np.zeros(4)
+    likelihoods, numbers = drawn(CALLS, len(serves)), drawn(CALLS)
     fixed = [_given(each) for each in (mind.set_point, mind.sense, mind.a, mind.b)]
     for n, (values, changes) in enumerate(zip(*_needs(mind, drawn), strict=True)):
         drives = _built_in_drives(mind, values, changes)
@@ -168,7 +169,9 @@ def _choices(
                 raised(_given(values), _given(changes), *fixed, drives)
             except Exception:
                 continue
-        yield _given(drives), _given(likelihoods[n]), serves, float(luck[n])
+        if n % FRESH == 0:
+            memory = np.zeros(4)
+        yield _given(drives), _given(likelihoods[n]), serves, float(numbers[n]), memory
 
 
 def _built_in_drives(
@@ -213,10 +216,10 @@ def _lessons(mind: np.record, around: Surroundings, drawn: _Drawn, _: Functions)
 def _searches(mind: np.record, around: Surroundings, drawn: _Drawn, _: Functions) -> Iterator[Any]:
     fixed = _given(around.aheads), _given(around.sides)
     readings = (drawn(CALLS, len(around.aheads)) * (BRIGHTEST + 1)).astype(np.int64)
-    luck = drawn(CALLS, 2)
+    numbers = drawn(CALLS, 2)
     memory = np.zeros(4)
     for n in range(CALLS):
         if n % FRESH == 0:
             memory = np.zeros(4)
         speeds = int(mind.cruise_speed), int(mind.turn_speed)
-        yield _given(readings[n]), *fixed, memory, float(luck[n, 0]), float(luck[n, 1]), *speeds
+        yield _given(readings[n]), *fixed, memory, *map(float, numbers[n]), *speeds

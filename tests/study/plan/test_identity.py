@@ -108,7 +108,7 @@ def test_another_engine_lives_other_lives(monkeypatch):
 
 
 WALK = """
-def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+def walk(readings, aheads, sides, memory, u_a, u_b, speed, turn):
     return speed, speed - {number}
 """
 
@@ -126,7 +126,7 @@ def test_a_function_counts_by_what_it_does_and_not_by_where_it_lies(tmp_path):
 def test_a_function_that_nobody_can_name_is_refused():
     unknown = [object()]
 
-    def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+    def walk(readings, aheads, sides, memory, u_a, u_b, speed, turn):
         return (speed, speed) if unknown else (0, 0)
 
     functions = lived().functions._replace(wander=walk)

@@ -136,7 +136,7 @@ def test_a_mistake_is_told_with_the_cases_that_have_it(faults):
 def test_the_files_a_study_draws_on_are_known(faults, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "own.py").write_text(
-        "def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):\n"
+        "def walk(readings, aheads, sides, memory, u_a, u_b, speed, turn):\n"
         "    return speed, speed\n"
     )
     world_of(WorldChoice()).save(tmp_path / "mine.toml")

@@ -76,8 +76,8 @@ def test_a_file_that_has_changed_is_refused_and_its_copy_kept(faults, tmp_path, 
     text = f'name = "own"\nlives = 1\nsteps = 5\n[mind]\nwander = "{own}:walk"\n'
     directory = tmp_path / "results"
     faults.go_on(faults.plan(text), directory)
-    assert "luck_b * 3.0" in lost
-    own.write_text(lost.replace("luck_b * 3.0", "luck_b * 2.0"))
+    assert "u_b * 3.0" in lost
+    own.write_text(lost.replace("u_b * 3.0", "u_b * 2.0"))
     (line,) = differences_from(directory, faults.plan(text + "# read again\n"))
     assert line == f"{own} has changed since; as it was it is in {directory / 'inputs'}"
     assert verify(Results(directory), telling).problems == [line]
@@ -92,7 +92,7 @@ def test_a_file_that_has_changed_is_refused_and_its_copy_kept(faults, tmp_path, 
 
 
 WALK = """
-def walk(readings, aheads, sides, memory, luck_a, luck_b, speed, turn):
+def walk(readings, aheads, sides, memory, u_a, u_b, speed, turn):
     return speed, speed - {number}
 """
 
