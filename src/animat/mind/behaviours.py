@@ -90,7 +90,7 @@ def ignores_the_dark(controller):
 
 @compiled
 def needs_numbers(controller, memory):
-    """Tell whether a controller looks at its random numbers this step: to draw it is a tenth of a step."""
+    """Tell whether a controller needs random numbers this step: a tenth of a step to draw."""
     return controller != CURVED_WANDER or memory[2] <= 0.0
 
 
