@@ -155,7 +155,7 @@ def counts() -> dict[str, int]:
         mind = animat.Mind(agent=agent, death=False)
         setting = bring_together(mind, world, animat.Khepera(infrared=infrared))
         end = lived(advance.of(setting.counts, setting.functions), setting)
-        library, symbols = advance.libraries[0]
+        library, symbols = advance.libraries[setting.counts, setting.functions]
         call, count = counted(library, symbols, advance.function)
         assert lived(call, setting) == end
         found[f"{world.name}, {agent}, {infrared}"] = count()

@@ -80,7 +80,7 @@ def sense(x, y, state, scratch, robot, raster, present):
         word = np.uint64(state.step)
         words = word, word, word, word
         heading = state.heading + 0.01
-        read_infrared(x, y, heading, robot, raster, present, words, scratch.readings)
+        read_infrared(x, y, heading, robot, raster, present, words, scratch.readings, 0)
 
 
 @compiled

@@ -21,9 +21,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numba.core.extending import _Intrinsic
 
 import animat
 from animat.numerics.compiled import COMPILING_LAYERS, compiled
+from animat.numerics.linked import Linked
 
 STATEMENTS = (
     *(ast.FunctionDef, ast.arguments, ast.arg, ast.Return, ast.Expr, ast.Pass),
@@ -60,7 +62,7 @@ PLAIN = (bool, int, float, np.generic)
 
 def python_function(value: Any) -> FunctionType | None:
     """Return the source function of a compiled one, also where nothing is compiled."""
-    function = getattr(value, "py_func", value)
+    function = value.function if isinstance(value, Linked) else getattr(value, "py_func", value)
     if isinstance(function, FunctionType) and _decorated(function):
         return function
     return None
@@ -68,7 +70,8 @@ def python_function(value: Any) -> FunctionType | None:
 
 def _decorated(function: FunctionType) -> bool:
     code = function.__code__
-    return getline(code.co_filename, code.co_firstlineno).strip() in ("@compiled", "@kernel")
+    line = getline(code.co_filename, code.co_firstlineno).strip()
+    return line in ("@compiled", "@kernel") or line.startswith("@linked(")
 
 
 def compiled_functions() -> dict[str, FunctionType]:
@@ -79,7 +82,7 @@ def compiled_functions() -> dict[str, FunctionType]:
         for info in pkgutil.walk_packages(package.__path__, f"animat.{layer}."):
             module = importlib.import_module(info.name)
             for name, value in vars(module).items():
-                function = python_function(value) if callable(value) else None
+                function = python_function(value)
                 if function and function.__module__ == info.name:
                     found[f"{info.name}.{name}"] = function
     return found
@@ -153,6 +156,10 @@ def _is_allowed(name: str, around: dict[str, Any]) -> bool:
     value = around[name]
     if isinstance(value, tuple):
         return all(isinstance(one, PLAIN) for one in value)
+    if isinstance(value, type):  # a named tuple is its values, one after the other
+        return issubclass(value, tuple) and hasattr(value, "_fields")
+    if isinstance(value, _Intrinsic):  # of ours: layout.py and linked.py
+        return value._defn.__module__.startswith("animat.numerics.")
     return isinstance(value, (ModuleType, *PLAIN)) or python_function(value) is not None
 
 

@@ -3,12 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
-import json
-import os
 import re
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -17,7 +12,17 @@ import numba
 import pytest
 
 import animat
+from animat.life.kernels import advance
+from animat.life.model import Key, Model
+from animat.life.scenario import bring_together
+from animat.life.state import STATE, state_at
+from animat.life.step import step
+from animat.mind.functions import BUILT_IN, ROLES, SLOTS
+from animat.mind.parameters import MIND, mind_at
 from animat.numerics.compiled import OPTIONS
+from animat.numerics.linked import linked
+from animat.robot.parameters import ROBOT, robot_at
+from animat.world.scene import Scene
 
 SCRIPT = Path(__file__).parents[1] / "bench" / "instructions.py"
 SLOWER = 30
@@ -159,40 +164,34 @@ def test_both_a_loss_and_a_gain_are_told(instructions):
     assert not within
 
 
-@pytest.mark.long
-def test_a_slowed_build_is_found(tmp_path, instructions):
-    """A copy of the package with a few operations more in every step, which change nothing."""
-    package = shutil.copytree(
-        Path(animat.__file__).parent,
-        tmp_path / "animat",
-        ignore=shutil.ignore_patterns("__pycache__"),
-    )
-    step = package / "life" / "step.py"
-    source = step.read_text(encoding="utf-8")
-    assert source.count("    state.event = 0\n") == 1
-    planted = f"""
-    slow = state.x
-    for n in range({SLOWER // 2}):
-        slow = slow * 0.5 + n
-    if slow == 0.123:
-        state.x = slow
-"""
-    step.write_text(source.replace("    state.event = 0\n", "    state.event = 0\n" + planted))
-    ran = subprocess.run(
-        [sys.executable, str(SCRIPT)],
-        env={**os.environ, "PYTHONPATH": str(tmp_path)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert ran.returncode == 1, ran.stderr
-    assert "--write" in ran.stderr
-    lines = [line for line in ran.stdout.splitlines() if "a step" in line]
-    for line, (name, known) in zip(
-        lines,
-        json.loads(instructions.FILE.read_text())["instructions"].items(),
-        strict=True,
-    ):
-        assert line.startswith(name)
-        before = known / instructions.STEPS
-        assert (1 + instructions.MARGIN) * before < float(line.split()[-4]) < before + 2 * SLOWER
+@linked(advance.arguments, (STATE, MIND, ROBOT), SLOTS, ROLES, BUILT_IN)
+def slowed(states, present, lives, minds, robots, raster, seed, until, functions):
+    """Advance lives as `advance` does, with a few operations more in every step, for nothing."""
+    model = Model(mind_at(minds, 0), robot_at(robots, 0), functions)
+    for n in range(len(lives)):
+        state, scene, key = state_at(states, n), Scene(raster, present[n]), Key(seed, lives[n])
+        while state.step < until and not state.dead:
+            slow = state.x
+            for i in range(SLOWER // 2):
+                slow = slow * 0.5 + i
+            if slow == 0.123:
+                state.x = slow
+            step(state, model, scene, key)
+
+
+def test_a_slowed_build_is_found(instructions):
+    setting = bring_together(animat.Mind(death=False), animat.World.abundant())
+    counted = []
+    for kernel in (advance, slowed):
+        kernel.of(setting.counts, setting.functions)
+        call, count = instructions.counted(
+            *kernel.libraries[setting.counts, setting.functions], kernel.function
+        )
+        end = instructions.lived(call, setting)
+        counted.append((end, count() / instructions.STEPS))
+    (end, before), (slow_end, slow) = counted
+    assert slow_end == end
+    assert (1 + instructions.MARGIN) * before < slow < before + 2 * SLOWER
+    known = {"instructions": {"a life": round(before * 1e4)}}
+    _, well = instructions.compared(known, {"instructions": {"a life": round(slow * 1e4)}})
+    assert not well

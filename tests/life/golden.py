@@ -203,10 +203,12 @@ def many(batch: int = MANY, threads: int = 1, shuffled: bool = False) -> str:
 
 def told(how_much: str = "all") -> dict[str, Any]:
     """Return what is known of the golden lives, as it stands in the file: "all" of it, what can be
-    had uncompiled ("short"), or a little of that ("few").
+    had uncompiled ("short"), or a little of that ("few"), with many lives beside it ("some").
     """
     if how_much == "few":
         return {"engine": ENGINE, "rasters": rasters(["small"]), "short": hashes(SHORT, few())}
+    if how_much == "some":
+        return {**told("few"), "many": many()}
     soon = {"engine": ENGINE, "rasters": rasters(), "short": hashes(SHORT)}
     return soon if how_much == "short" else {**soon, "long": hashes(LONG), "many": many()}
 

@@ -111,7 +111,7 @@ def kernels() -> dict[str, Any]:
 def intermediate_codes(kernel: Any) -> list[str]:
     """Return LLVM's optimised code of all that a kernel has been compiled to in this process."""
     if isinstance(kernel, Linked):
-        libraries = [library for library, _ in kernel.libraries]
+        libraries = [library for library, _ in kernel.libraries.values()]
     else:
         libraries = [one.library for one in kernel.overloads.values()]
     return [str(library._get_module_for_linking()) for library in libraries]

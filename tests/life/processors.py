@@ -71,7 +71,8 @@ def possible() -> list[str]:
 def lived_on(name: str, folder: Path, uncompiled: str = "short") -> dict[str, Any]:
     """Live the golden lives in a process of its own, with the code it compiles kept in `folder`.
 
-    Where nothing is compiled, only those that `uncompiled` names (see golden.py).
+    Where nothing is compiled, only those that `uncompiled` names, "short" or "few" (see golden.py);
+    compiled, all, or for "few" some.
 
     Returns what golden.py tells as "told", and as "code" what the kernel was compiled to: the
     processor's name and features, how many instructions are fused and how many AVX-encoded, and
@@ -95,7 +96,8 @@ def child(uncompiled: str) -> None:
     from numba import config
 
     compiled = not config.DISABLE_JIT
-    told = golden.told("all" if compiled else uncompiled)
+    more = {"short": "all", "few": "some"}
+    told = golden.told(more[uncompiled] if compiled else uncompiled)
     sys.stdout.write(json.dumps({"told": told, "code": code() if compiled else None}))
 
 
@@ -111,7 +113,7 @@ def code() -> dict[str, Any]:
 
     fused = numba.njit(**{**OPTIONS, "fastmath": True})(product_and_sum)
     fused(1.0)
-    library, _ = advance.libraries[0]
+    library, _ = next(iter(advance.libraries.values()))
     _, processor, features = library.codegen.magic_tuple()
     assembly = library.get_asm_str()
     return {

@@ -192,7 +192,7 @@ def look(poses, robot, raster, present, seed, life, readings):
     for t in range(len(poses)):
         words = bits(seed, life, SENSORS, t)
         read_infrared(
-            poses[t, 0], poses[t, 1], poses[t, 2], robot, raster, present, words, readings[t]
+            poses[t, 0], poses[t, 1], poses[t, 2], robot, raster, present, words, readings[t], 0
         )
 
 

@@ -138,7 +138,7 @@ def test_outside_a_linked_kernel_a_slot_may_hold_anything():
 def test_without_custom_functions_nothing_is_left_of_asking_for_them():
     asked()
     asked(number=lambda x: x)
-    codes = [str(library._get_module_for_linking()) for library, _ in kernel.libraries]
+    codes = [str(library._get_module_for_linking()) for library, _ in kernel.libraries.values()]
     assert codes
     assert not any("animat_any_custom" in code for code in codes)
     lines = [line for code in codes for line in code.splitlines() if " call " in line]

@@ -59,7 +59,15 @@ def drive() -> list[str]:
             x, y, heading = 80.0, 80.0, 0.5
             for step in range(STEPS):
                 read_infrared(
-                    x, y, heading, robot, raster, present, bits(seed, life, SENSORS, step), readings
+                    x,
+                    y,
+                    heading,
+                    robot,
+                    raster,
+                    present,
+                    bits(seed, life, SENSORS, step),
+                    readings,
+                    0,
                 )
                 left, right = ((10, 8), (9, 10), (-9, -4))[step // 15 % 3]
                 u_x, u_y, u_turn, _ = uniforms(seed, life, MOTORS, step)

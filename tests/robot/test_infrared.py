@@ -23,7 +23,7 @@ COLUMNS = [
 
 def read(pose, raster, settings=MICHEL, present=ALL, words=SILENT):
     readings = np.full(8, -1, dtype=np.int64)
-    read_infrared(*pose, settings.parameters(), raster, present, words, readings)
+    read_infrared(*pose, settings.parameters(), raster, present, words, readings, 0)
     return readings.tolist()
 
 
@@ -140,7 +140,7 @@ def read_all(poses, words, robot, raster, present, readings):
         x, y, heading = poses[row]
         w = words[row]
         read_infrared(
-            x, y, heading, robot, raster, present, (w[0], w[1], w[2], w[3]), readings[row]
+            x, y, heading, robot, raster, present, (w[0], w[1], w[2], w[3]), readings[row], 0
         )
 
 

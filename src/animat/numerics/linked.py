@@ -5,7 +5,7 @@ for ten seconds each time. Here it is taken once as far as LLVM's unoptimised co
 which reads the shapes of records from tables (`layout.py`) and calls custom functions by the names
 of *slots*. For each shape and each custom function these are linked in, and LLVM optimises the
 whole, in a second or two; a step is as fast as if it had been compiled for them alone. Template and
-machine code are kept on disk. docs/decisions/linking.md says why.
+machine code are kept on disk. docs/decisions/linked.md says why.
 
 This leans on private parts of Numba; tests/numerics/test_linked.py tests each of them.
 """
@@ -118,7 +118,8 @@ def any_custom():
 class Linked:
     """A kernel of some layouts and roles; `of` gives it for shapes and functions.
 
-    `libraries` are what it has been compiled to in this process, each with its symbols.
+    `arguments` are the types it takes; `libraries`, what it has been compiled to in this process,
+    each with its symbols, by counts and functions.
     """
 
     def __init__(
@@ -133,12 +134,12 @@ class Linked:
         """Make a kernel of a Python function; see `linked`."""
         self.function = function
         self.name = f"{function.__module__}.{function.__qualname__}"
-        self._arguments, self._slots, self._roles = arguments, slots, roles
+        self.arguments, self._slots, self._roles = arguments, slots, roles
         self._idle = frozenset(idle)
         self._layouts = {layout.symbol: layout for layout in layouts}
         self._template: _Template | None = None
         self._made: dict[Any, Callable[..., Any]] = {}
-        self.libraries: list[tuple[Any, Names]] = []
+        self.libraries: dict[Any, tuple[Any, Names]] = {}
         self._disk: Any = None
 
     def of(self, counts: Any, functions: Any = ()) -> Callable[..., Any]:
@@ -155,12 +156,12 @@ class Linked:
         made = self._made.get(key)
         if made is None:
             with global_compiler_lock:
-                made = self._made.get(key) or self._kernel(counts._asdict(), functions)
+                made = self._made.get(key) or self._kernel(counts, functions)
                 self._made[key] = made
         return made
 
-    def _kernel(self, counts: Mapping[str, int], functions: Any) -> Callable[..., Any]:
-        template = self._compiled()
+    def _kernel(self, shape_of: Any, functions: Any) -> Callable[..., Any]:
+        template, counts = self._compiled(), shape_of._asdict()
         own = [cache_key(getattr(functions, role)) for role in template.roles]
         shape = [self._layouts[symbol].table(counts) for symbol in template.layouts]
         key = repr((self.name, own, shape))
@@ -175,7 +176,7 @@ class Linked:
             library, names = self._library(template, counts, functions, suffix)
             if lasts:
                 self._save(key, (names, library.serialize_using_object_code()))
-        self.libraries.append((library, names))
+        self.libraries[shape_of, functions] = library, names
         return _callable(library, names, self.function)
 
     def _library(
@@ -223,11 +224,11 @@ class Linked:
 
     def _compile(self) -> _Template:
         around = {"body": compiled(self.function), "slots": self._slots}
-        kernel = _with_arguments("{}", "body({}, slots)", len(self._arguments), **around)
+        kernel = _with_arguments("{}", "body({}, slots)", len(self.arguments), **around)
         # Inlined as far as LLVM's code, but with what Python calls it by.
         options: dict[str, Any] = {"no_cfunc_wrapper": True, **OPTIONS}
         dispatcher: Any = CPUDispatcher(kernel, {}, {"nopython": True, **options}, InlinedCompiler)
-        dispatcher.compile(self._arguments)
+        dispatcher.compile(self.arguments)
         (overload,) = dispatcher.overloads.values()
         described = overload.fndesc
         overload.library._ensure_finalized()

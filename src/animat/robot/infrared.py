@@ -53,7 +53,7 @@ def read_infrared(
     present: NDArray[np.uint8],
     words: Words,
     readings: NDArray[np.int64],
-    first: int = 0,
+    first: int,
 ) -> None:
     """Write what eight sensors from `first` on read in a pose (mm, mm, rad) to `readings` [N].
 
