@@ -30,7 +30,8 @@ from numba import types
 
 from animat.life.helper import SHIFT, doubled
 from animat.numerics.compiled import compiled
-from animat.numerics.linked import Role, linked, slot
+from animat.numerics.linked import linked
+from animat.numerics.slots import Role, slot
 
 ROLES = {"own": Role((types.float64,), types.float64)}
 

@@ -13,7 +13,8 @@ import pytest
 from numba import types
 
 from animat.numerics.compiled import OPTIONS, compiled
-from animat.numerics.linked import Role, any_custom, linked, slot
+from animat.numerics.linked import linked
+from animat.numerics.slots import Role, any_custom, slot
 from animat.numerics.snapshot import snapshot
 
 REALS = types.Array(types.float64, 1, "C")

@@ -17,7 +17,7 @@ from animat.mind.affordance import CUSTOM_ESTIMATOR
 from animat.mind.agents import ACCEPT_ALL, ASK_TRUTH
 from animat.mind.behaviours import APPROACH, LEAVE
 from animat.numerics.compiled import compiled
-from animat.numerics.linked import any_custom
+from animat.numerics.slots import any_custom
 from animat.numerics.streams import FEATURES, SELECTION, uniforms
 
 

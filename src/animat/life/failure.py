@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from animat.life.scenario import LifeError, Setting
 from animat.mind.functions import Functions
 from animat.numerics.compiled import compiled
-from animat.numerics.linked import any_custom
+from animat.numerics.slots import any_custom
 
 LAW, DRIVES, SELECTOR, ESTIMATOR, LEARNER, WANDER = range(1, 7)
 """The roles of custom functions as `asked` and `failure` of a state know them; 0 is none."""

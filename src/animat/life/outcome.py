@@ -8,7 +8,7 @@ from animat.life.sight import OUT_OF_SIGHT, distance_to
 from animat.life.state import DIED, FAILED, HIGH, LOW, SUCCEEDED, TRAINED
 from animat.mind import affordance, drives, homeostasis
 from animat.numerics.compiled import compiled
-from animat.numerics.linked import any_custom
+from animat.numerics.slots import any_custom
 from animat.numerics.streams import OUTCOMES, PLACEMENT, uniforms
 
 

@@ -34,7 +34,7 @@ from animat.life.state import BLOCKED, NO_SITE, REACHED, UNREACHED
 from animat.mind import behaviours, drives, homeostasis
 from animat.mind.behaviours import ACT, APPROACH, CUSTOM_WANDER, LEAVE, WANDER
 from animat.numerics.compiled import compiled
-from animat.numerics.linked import any_custom
+from animat.numerics.slots import any_custom
 from animat.numerics.streams import MOTORS, SENSORS, bits, uniforms
 from animat.numerics.streams import WANDER as WANDERING
 from animat.robot.collision import collide

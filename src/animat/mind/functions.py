@@ -22,7 +22,7 @@ from animat.files.settings import SettingsError
 from animat.mind.loading import load
 from animat.numerics.checked import SelfCallError, checked
 from animat.numerics.compiled import compiled
-from animat.numerics.linked import Role, slot
+from animat.numerics.slots import Role, slot
 from animat.numerics.snapshot import share_identity, snapshot
 
 SIGNATURES = {

@@ -18,28 +18,19 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
-from llvmlite import binding, ir
+from llvmlite import binding
 from numba import _dynfunc, types  # pyright: ignore[reportAttributeAccessIssue]
-from numba.core import cgutils, config
+from numba.core import config
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.environment import Environment
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.typing.templates import signature
-from numba.extending import intrinsic
 
 from animat.numerics.compiled import OPTIONS, announce, compiled, kept
 from animat.numerics.inlined import InlinedCompiler, inlined
 from animat.numerics.layout import Layout
+from animat.numerics.slots import CUSTOM, SLOT, Role, with_arguments
 from animat.numerics.snapshot import cache_key
-
-SLOT, CUSTOM = "animat_slot_", "animat_any_custom"
-
-
-class Role(NamedTuple):
-    """What is asked of a function in a slot: the types it is given, and the one it returns."""
-
-    arguments: tuple[types.Type, ...]
-    result: types.Type
 
 
 class Names(NamedTuple):
@@ -62,57 +53,8 @@ class _Template(NamedTuple):
     layouts: tuple[str, ...]
 
 
-def slot(name: str, role: Role) -> Any:
-    """Return a compiled function that calls what will be linked into the slot of a role."""
-
-    def lower(context: Any, builder: Any, _: Any, given: Any) -> Any:
-        kind = context.call_conv.get_function_type(role.result, role.arguments)
-        known = builder.module.globals.get(SLOT + name)
-        function = known or ir.Function(builder.module, kind, name=SLOT + name)
-        status, result = context.call_conv.call_function(
-            builder, function, role.result, role.arguments, given
-        )
-        with cgutils.if_unlikely(builder, status.is_error):
-            context.call_conv.return_status_propagate(builder, status)
-        return result
-
-    count, found = len(role.arguments), (signature(role.result, *role.arguments), lower)
-    call = intrinsic(_with_arguments("typing_context, {}", "found", count, found=found))
-    return compiled(_with_arguments("{}", "call({})", count, call=call))
-
-
-def _with_arguments(given: str, result: str, count: int, **around: Any) -> Callable[..., Any]:
-    """Return a function of so many arguments: Numba compiles no `*arguments` for a signature."""
-    arguments = ", ".join(f"a{n}" for n in range(count))
-    exec(f"def made({given.format(arguments)}): return {result.format(arguments)}", around)
-    around["made"].__module__ = __name__
-    return around["made"]
-
-
 def _target() -> Any:
     return cpu_target.target_context
-
-
-@intrinsic
-def _any_custom(typing_context):
-    def lower(context: Any, builder: Any, _: Any, given: Any) -> Any:
-        known = builder.module.globals.get(CUSTOM)
-        if known is None:
-            byte = ir.IntType(8)
-            known = ir.GlobalVariable(builder.module, byte, CUSTOM)
-            vars(known).update(linkage="weak", global_constant=True, initializer=byte(1))
-        return builder.trunc(builder.load(known), ir.IntType(1))
-
-    return signature(types.boolean), lower
-
-
-_ANY_CUSTOM: Any = (lambda: True) if getattr(config, "DISABLE_JIT", False) else _any_custom
-
-
-@compiled
-def any_custom():
-    """Tell whether a slot may hold a custom function; a constant where kernels are linked."""
-    return _ANY_CUSTOM()
 
 
 class Linked:
@@ -224,7 +166,7 @@ class Linked:
 
     def _compile(self) -> _Template:
         around = {"body": compiled(self.function), "slots": self._slots}
-        kernel = _with_arguments("{}", "body({}, slots)", len(self.arguments), **around)
+        kernel = with_arguments("{}", "body({}, slots)", len(self.arguments), **around)
         # Inlined as far as LLVM's code, but with what Python calls it by.
         options: dict[str, Any] = {"no_cfunc_wrapper": True, **OPTIONS}
         dispatcher: Any = CPUDispatcher(kernel, {}, {"nopython": True, **options}, InlinedCompiler)
@@ -287,7 +229,7 @@ _FILLINGS: WeakKeyDictionary[Any, bytes] = WeakKeyDictionary()
 def _filling(name: str, role: Role, function: Any) -> binding.ModuleRef:
     """Return a module that fills the slot of a role: a function, its result cast to the role's."""
     if function not in _FILLINGS:
-        fill = _with_arguments("{}", "function({})", len(role.arguments), function=function)
+        fill = with_arguments("{}", "function({})", len(role.arguments), function=function)
         dispatcher = inlined(fill, **OPTIONS)
         dispatcher.compile(signature(role.result, *role.arguments))
         (overload,) = dispatcher.overloads.values()
