@@ -98,3 +98,18 @@ def test_what_it_cannot_be_run_with_is_refused_at_once(tmp_path):
 def test_an_object_in_a_dict_stands_for_its_settings():
     by_object = {"name": "x", "mind": animat.Mind(agent="RANDOM")}
     assert _study(by_object) == study_of({"name": "x", "mind": {"agent": "RANDOM"}}, "x")
+
+
+def test_a_file_that_has_changed_between_two_runs_counts_as_it_is(tmp_path, monkeypatch):
+    """Both run the same text, in one process."""
+    monkeypatch.chdir(tmp_path)
+    study = {"name": "by_file", "lives": 6, "steps": 400, "world": {"layout": "mine.toml"}}
+    found = []
+    for number in range(2):
+        animat.World.random({"TS": 2, "CL": 1 + number}, seed=number).save("mine.toml")
+        run = animat.run(study, tmp_path / f"run{number}", threads=1, progress=False)
+        there = animat.live_many(animat.Mind(), animat.World.load("mine.toml"), lives=6, steps=400)
+        ended = ("lifespan", "encounters")
+        assert all(run.lives[name].to_pylist() == there.table[name].to_pylist() for name in ended)
+        found.append(run.lives["encounters"].to_pylist())
+    assert found[0] != found[1]

@@ -28,7 +28,7 @@ from animat.study.execute.run import threads as workers_of
 from animat.study.file.builtin import study_file
 from animat.study.file.read import read_study, study_of
 from animat.study.file.study import Study
-from animat.study.plan.plan import plan_of
+from animat.study.plan.plan import forget, plan_of
 from animat.study.plan.preflight import check_livable
 from animat.study.store.manifest import MANIFEST
 from animat.study.store.results import Results
@@ -104,6 +104,7 @@ def run(
         lambda: threads if threads is None else whole("threads", threads, 1, MOST_THREADS),
         lambda: _progress(progress),
     )
+    forget()  # files may have changed since the last run in this process
     plan = plan_of(_study(study).to_toml())
     directory = directory or Path("results") / plan.study.name
     with _told(progress) as tell, workers_of(threads) as workers:

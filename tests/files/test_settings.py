@@ -338,3 +338,14 @@ def test_the_nearest_name():
     assert nearest("kind", known) == "; known: set_point, rate, low, high, AF"
     assert nearest("kind", {}) == ""
     assert nearest("hi", ["HI", "Hi", "low"]) == '; did you mean "HI"?'
+
+
+@pytest.mark.parametrize("check", [Mind.model_validate, Mind.model_validate_json])
+def test_what_pydantic_offers_refuses_like_a_constructor(check):
+    given = {"agnt": "BLIND"}
+    with pytest.raises(SettingsError) as by_name:
+        Mind(**given)
+    with pytest.raises(SettingsError) as told:
+        check(given if check == Mind.model_validate else json.dumps(given))
+    assert str(told.value) == str(by_name.value)
+    assert Mind.model_validate_json('{"agent": "LEARNING"}') == Mind(agent="LEARNING")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import stat
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from datetime import date, time
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, TypeVar
@@ -64,10 +64,29 @@ class Settings(BaseModel):
 
     if not TYPE_CHECKING:
 
+        @classmethod
+        def model_validate(cls, obj: Any, **options: Any) -> Any:
+            """Check settings. Raises SettingsError."""
+            read = super().model_validate
+            return _explained(cls, lambda: read(obj, **options))
+
+        @classmethod
+        def model_validate_json(cls, json_data: Any, **options: Any) -> Any:
+            """Check settings in JSON. Raises SettingsError."""
+            read = super().model_validate_json
+            return _explained(cls, lambda: read(json_data, **options))
+
         def __setattr__(self, name: str, value: Any) -> None:
             """Refuse to change settings, which are shared. Raises SettingsError."""
             kind = type(self).__name__
             raise SettingsError(f"{kind}.{name}: settings are frozen; make a new {kind}")
+
+
+def _explained(model: type[BaseModel], check: Callable[[], Any]) -> Any:
+    try:
+        return check()
+    except ValidationError as error:
+        raise SettingsError(*mistakes(error, model)) from None
 
 
 def explain(error: ValidationError, model: type[BaseModel], where: str) -> SettingsError:

@@ -114,7 +114,7 @@ def write_networks_file(
         for b, name in enumerate(behaviours)
     }
     try:
-        file = NetworksFile.model_validate(
+        file = NetworksFile.__pydantic_validator__.validate_python(
             {"format": FORMAT, "features": features, "hidden": hidden, "weights": rows},
             strict=False,
         )

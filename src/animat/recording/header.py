@@ -173,7 +173,7 @@ def read_head(text: str) -> Head:
     if found != FORMAT:
         raise SettingsError(f"is of format {found!r}; this animat reads format {FORMAT}")
     try:
-        return Head.model_validate_json(text)
+        return Head.__pydantic_validator__.validate_json(text)
     except ValidationError as error:
         raise explain(error, Head, "its head") from None
 
