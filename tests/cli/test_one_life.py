@@ -7,7 +7,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import animat
-from animat.cli import one_life
+from animat.cli import main, one_life
 from animat.cli.one_life import OneLife, live_one, story
 from animat.files.atomic import RunError
 from animat.files.settings import SettingsError
@@ -263,3 +263,27 @@ def test_a_life_is_recorded_from_python(tmp_path):
     assert recording.at(350).live(steps=360, record="last:20").trace.num_rows == 10
     with pytest.raises(LifeError, match="steps = 0"):
         animat.record(mind, world, path, steps=0)
+
+
+LATE = """
+def late(readings, aheads, sides, memory, u_a, u_b, speed, turn):
+    memory[0] += 1.0
+    memory[int(memory[0] / 500.0)] += 0.0
+    return speed, speed
+"""
+
+
+def test_checked_functions_are_found_where_the_trial_before_a_life_cannot(
+    tmp_path, monkeypatch, capsys
+):
+    """The index leaves the memory after 2,000 steps of searching."""
+    (tmp_path / "late.py").write_text(LATE)
+    (tmp_path / "late.toml").write_text('[mind]\ndeath = false\nwander = "late.py:late"\n')
+    monkeypatch.chdir(tmp_path)
+    command = ["animat", "life", "--settings", "late.toml", "--steps", "20000", "--check-functions"]
+    monkeypatch.setattr("sys.argv", command)
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 1
+    (line,) = [one for one in capsys.readouterr().err.splitlines() if one.startswith("animat: ")]
+    assert "wander: late raised IndexError: index is out of bounds, in step " in line
