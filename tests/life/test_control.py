@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
 from animat.life.batch import advance
 from animat.life.control import advance_to_choice, command, rebirth, take_choice
 from animat.life.digest import digest
-from animat.life.scenario import Setting, bring_together
+from animat.life.scenario import LifeError, Setting, bring_together
 from animat.life.state import DISREGARDED, ENCOUNTERED, FAILED, REACHED, SUCCEEDED
 from animat.mind.behaviours import ACT, WANDER
 from animat.mind.mind import Mind
@@ -149,3 +151,51 @@ def test_rebirth_begins_the_lives_of_some_rows(world):
     assert states[rows].tobytes() == fresh.tobytes()
     rest = np.delete(np.arange(len(LIVES)), rows)
     assert states[rest].tobytes() == kept[rest].tobytes()
+
+
+def wrong(life: tuple) -> Iterator[tuple]:
+    """The arguments of a life, one of them as a kernel would misread it."""
+    setting, seed, lives, states, present = life
+    yield setting, -1, lives, states, present
+    yield setting, "1", lives, states, present
+    yield setting, seed, lives.astype(np.int64), states, present
+    yield setting, seed, lives[:-1], states, present
+    yield setting, seed, lives, states[:-1], present
+    yield setting, seed, lives, states[::-1], present
+    yield setting, seed, lives, states["x"].copy(), present
+    yield setting, seed, lives, states, present[:, :-1]
+    yield setting, seed, lives, states, present.astype(bool)
+    yield setting, seed, lives, states, np.asfortranarray(present)
+    yield setting, seed, list(lives), states, present
+    yield None, seed, lives, states, present
+
+
+def test_what_a_kernel_would_misread_is_refused(world):
+    setting = bring_together(Mind(), world)
+    life = setting, SEED, LIVES, *setting.begin(SEED, LIVES)
+    before = life[3].copy()
+    number = len(LIVES)
+    due, whole = np.ones(number, np.uint8), np.zeros(number, np.int64)
+    for given in wrong(life):
+        for call in (
+            lambda given=given: advance_to_choice(*given, 10),
+            lambda given=given: take_choice(*given, whole, due),
+            lambda given=given: command(*given, np.zeros((number, 2), np.int64), whole),
+            lambda given=given: rebirth(*given, np.array([0])),
+        ):
+            with pytest.raises(LifeError):
+                call()
+    for bad in (np.array([-1]), np.array([number]), np.array([0.0]), [0]):
+        with pytest.raises(LifeError, match="rows: must be"):
+            rebirth(*life, bad)
+    for bad in (due.astype(bool), due[1:], whole, None):
+        with pytest.raises(LifeError, match="due: must be"):
+            take_choice(*life, whole, bad)
+    for bad in (whole.astype(np.int32), whole[1:], whole.astype(float), [0] * number):
+        with pytest.raises(LifeError, match="choices: must be"):
+            take_choice(*life, bad, due)
+        with pytest.raises(LifeError, match="acts: must be"):
+            command(*life, np.zeros((number, 2), np.int64), bad)
+    with pytest.raises(LifeError, match="motors: must be"):
+        command(*life, np.zeros((2, number), np.int64).T, whole)
+    assert life[3].tobytes() == before.tobytes()

@@ -14,7 +14,7 @@ from numba import types
 from numpy.typing import NDArray
 
 from animat.life.sight import row_and_column
-from animat.life.state import INDICES, NO_SITE, PRESENT, STATE, Counts, state_at
+from animat.life.state import INDICES, NO_SITE, PRESENT, STATE, Counts, state_at, state_dtype
 from animat.numerics.compiled import compiled
 from animat.numerics.layout import BYTES
 from animat.numerics.linked import linked
@@ -85,7 +85,7 @@ def born(
 
     `weights` [B, W] or [L, B, W] are the networks they are born with; None leaves them at 0.
     """
-    states = np.zeros(lives, STATE.dtype(counts._asdict()))
+    states = np.zeros(lives, state_dtype(counts))
     states["values"] = parameters.start
     states["previous"] = parameters.start
     states["behaviour"] = -1

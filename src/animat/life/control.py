@@ -13,11 +13,15 @@ States and present objects are those of `Setting.begin`, and are changed in plac
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
+from animat.files.arguments import MOST_63, MOST_64, instance, whole
 from animat.life import kernels
-from animat.life.scenario import Setting
+from animat.life.scenario import LifeError, Setting
+from animat.life.state import state_dtype
 from animat.numerics.layout import raw
 
 
@@ -31,8 +35,10 @@ def advance_to_choice(
 ) -> NDArray[np.uint8]:
     """Advance L lives until a choice is due, or each has `until` steps or is dead.
 
-    Returns `due` [L], 1 for a life that waits for its choice and 0 for one that has ended.
+    Returns `due` [L], 1 for a life that waits for its choice and 0 for one that has ended. Raises
+    LifeError for what is not as described.
     """
+    seed, until = _checked(setting, seed, lives, states, present), _steps(until)
     due = np.zeros(len(lives), np.uint8)
     call = kernels.advance_to_choice.of(setting.counts, setting.functions)
     call(raw(states), present, lives, *setting.constants, seed, until, due)
@@ -51,8 +57,12 @@ def take_choice(
     """End the step of those lives that are `due` [L], with the behaviours chosen: `choices` [L].
 
     A choice of B disregards the object, and -1 goes on as if none had been met; any other that is
-    no behaviour fails the life, as one of a custom selector does.
+    no behaviour fails the life, as one of a custom selector does. Raises LifeError for arrays that
+    are not as described.
     """
+    seed = _checked(setting, seed, lives, states, present)
+    _array("choices", choices, np.int64, (len(lives),))
+    _array("due", due, np.uint8, (len(lives),))
     call = kernels.take_choice.of(setting.counts, setting.functions)
     call(raw(states), present, lives, *setting.constants, seed, choices, due)
 
@@ -69,8 +79,12 @@ def command(
     """Advance L lives by one step with the motor commands `motors` [L, 2], in motor units.
 
     `acts` [L] are behaviours to begin where an object is in contact and faced, -1 for none. While
-    an act is under way the robot stands, whatever it is told.
+    an act is under way the robot stands, whatever it is told. Commands beyond what the motors take
+    are cut to that. Raises LifeError for arrays that are not as described.
     """
+    seed = _checked(setting, seed, lives, states, present)
+    _array("motors", motors, np.int64, (len(lives), 2))
+    _array("acts", acts, np.int64, (len(lives),))
     call = kernels.command.of(setting.counts, setting.functions)
     call(raw(states), present, lives, *setting.constants, seed, motors, acts)
 
@@ -85,7 +99,43 @@ def rebirth(
 ) -> None:
     """Begin the lives `lives` [L] anew in the given rows, and leave the others as they are.
 
-    Raises LifeError where the world has no room to start.
+    Raises LifeError where the world has no room to start, and for arrays that are not as described.
     """
+    seed = _checked(setting, seed, lives, states, present)
+    _array("rows", rows, np.int64, None)
+    if len(rows) and not 0 <= int(rows.min()) <= int(rows.max()) < len(lives):
+        raise LifeError(f"rows: must be 0 to {len(lives) - 1}")
     born, there = setting.begin(seed, lives[rows])
     states[rows], present[rows] = born, there
+
+
+def _checked(
+    setting: Setting,
+    seed: int,
+    lives: NDArray[np.uint64],
+    states: NDArray[np.void],
+    present: NDArray[np.uint8],
+) -> int:
+    """Return the seed. Raises LifeError for what a kernel would misread: it checks nothing."""
+    instance("setting", setting, Setting, LifeError)
+    _array("lives", lives, np.uint64, None)
+    number = len(lives)
+    _array("states", states, state_dtype(setting.counts), (number,))
+    _array("present", present, np.uint8, (number, max(1, setting.world.n_sites)))
+    return whole("seed", seed, 0, MOST_64, LifeError)
+
+
+def _array(name: str, value: Any, dtype: Any, shape: tuple[int, ...] | None) -> None:
+    good = isinstance(value, np.ndarray) and value.dtype == dtype and value.flags.c_contiguous
+    if good and (value.ndim == 1 if shape is None else value.shape == shape):
+        return
+    said = "of states of this setting" if dtype not in WORDS else f"of {WORDS[dtype]}"
+    length = "" if shape is None else f" and of shape {list(shape)}"
+    raise LifeError(f"{name}: must be a contiguous NumPy array {said}{length}")
+
+
+WORDS = {np.uint64: "uint64", np.uint8: "uint8", np.int64: "int64"}
+
+
+def _steps(until: int) -> int:
+    return whole("until", until, 0, MOST_63, LifeError)

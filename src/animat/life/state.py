@@ -7,6 +7,7 @@ hashed, it can be compared.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -126,3 +127,9 @@ class Counts(NamedTuple):
     F: int
     H: int
     W: int
+
+
+@cache
+def state_dtype(counts: Counts) -> np.dtype:
+    """Return NumPy's type of the states of these counts, the same object each time."""
+    return STATE.dtype(counts._asdict())
