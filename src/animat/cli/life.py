@@ -68,7 +68,8 @@ def life(
         Path | None, typer.Option("--from", help="Resume the life of this recording.")
     ] = None,
     at: Annotated[
-        int | None, typer.Option(help="Resume after so many steps; after its last one unless given.")
+        int | None,
+        typer.Option(help="Resume after so many steps; after its last one unless given."),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace these files.")] = False,
     check_functions: CheckFunctions = False,
