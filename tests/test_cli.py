@@ -338,7 +338,7 @@ class TestReplay:
         assert said.code == 1
         lines = said.out.splitlines()
         assert lines[0] == "another life: step 0 is the first that differs"
-        assert lines[1].split() == ["recorded", "lived", "again"]
+        assert lines[1].split() == ["recorded", "simulated", "again"]
         names = [line.split()[0] for line in lines[2:]]
         assert names == [*Mind().resolved_variables(), *Mind().drives]
         for line in lines[2:]:
@@ -488,7 +488,7 @@ def test_a_run_that_is_stopped_leaves_nothing_under_the_final_name_and_is_gone_o
         assert "interrupted: finishing the parts that are under way" in err
         kept = tmp_path / ".out.partial"
         assert err.endswith(
-            f"animat: what is finished is kept in {kept}; the same command goes on with it\n"
+            f"animat: finished work is stored in {kept}; the same command resumes it\n"
             "animat: interrupted; nothing is half-written\n"
         )
     log = tmp_path / ".out.partial" / "experiment2" / "log.jsonl"

@@ -42,7 +42,7 @@ def test_it_says_what_would_run_and_what_that_costs(animat, tmp_path):
         ["5", "AF", "0.5", "always"],
     ]
     assert "left out: 2 combinations: [it] would take too long" in lines
-    assert "lived once: 2 cases have the same lives as others" in lines
+    assert "simulated once: 2 cases have the same lives as others" in lines
     assert "at most: 4,000 steps of 8 lives, and 400 steps of 4 robots that learn" in lines
     assert any(re.match(r"expected: 1 s on the \d+ cores here, [\d.]+ kB of tab", x) for x in lines)
     assert any(re.match(r"estimated from \d+ lives of 4 cases, up to 20,000 st", x) for x in lines)

@@ -93,7 +93,7 @@ def test_one_that_is_interrupted_says_how_to_go_on(animat_says, monkeypatch):
     monkeypatch.setattr(module, "run", interrupted)
     code, _, err = animat_says("multiverse", *SMALL, "--set", "design.sample.points=8", "--quick")
     assert code == 130
-    assert "the same command goes on with" in err
+    assert "the same command resumes" in err
 
 
 def test_another_study_is_refused_in_a_line(animat_says):

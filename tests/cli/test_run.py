@@ -64,7 +64,7 @@ def test_a_study_is_lived_told_of_looked_at_and_exported(animat, file, tmp_path)
     said = animat("verify", "results/tiny")
     assert (said.code, said.out) == (
         0,
-        "6 of 6 parts are there and unchanged; 6 lives lived again are the same\n",
+        "6 of 6 parts are there and unchanged; 6 lives simulated again are the same\n",
     )
     said = animat("export", "results/tiny", "--to", "csv", "--out", "lives.csv")
     assert (said.code, said.out) == (0, "36 lives are in lives.csv\n")
@@ -194,8 +194,8 @@ def test_ctrl_c_finishes_what_is_under_way_and_says_how_to_go_on(animat, file, t
     rows = sum(pq.read_metadata(part).num_rows for part in parts)
     assert 0 < rows < 2_400
     assert said.err.endswith(
-        f"{ASKED}animat: {rows:,} of 2,400 lives are in results/tiny; the same command goes on with"
-        " the others\nanimat: interrupted; nothing is half-written\n"
+        f"{ASKED}animat: {rows:,} of 2,400 lives are in results/tiny; the same command resumes"
+        " the run\nanimat: interrupted; nothing is half-written\n"
     )
     assert animat("status", "results/tiny").out.splitlines()[-1] == "not run by anybody"
     assert animat("run", "tiny.toml", *many).code == 0

@@ -54,7 +54,7 @@ def check(study: StudyFile, changes: Set = None, debug: Debug = False) -> None:
     for rule in left_out:
         print(f"left out: {rule.count:,} combinations: {rule.why}")
     if again := len(plan.cases) - len(plan.lived):
-        print(f"lived once: {again:,} cases have the same lives as others")
+        print(f"simulated once: {again:,} cases have the same lives as others")
     for line in _costs(expected):
         print(line)
 

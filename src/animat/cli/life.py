@@ -62,19 +62,20 @@ def life(
     ] = None,
     every: Annotated[
         int | None,
-        typer.Option(help="Keep the whole state in it every so many steps; 1,000 unless given."),
+        typer.Option(help="Store the whole state in it every so many steps; 1,000 unless given."),
     ] = None,
     source: Annotated[
-        Path | None, typer.Option("--from", help="Go on with the life of this recording.")
+        Path | None, typer.Option("--from", help="Resume the life of this recording.")
     ] = None,
     at: Annotated[
-        int | None, typer.Option(help="From after so many steps; its last one unless given.")
+        int | None,
+        typer.Option(help="Resume after so many steps; after its last one unless given."),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace these files.")] = False,
     check_functions: CheckFunctions = False,
     debug: Debug = False,
 ) -> None:
-    """Live one life, and say how it went and why it ended."""
+    """Simulate one life, and say how it went and why it ended."""
     from animat.cli.one_life import OneLife, live_one, story
     from animat.progress import telling
 

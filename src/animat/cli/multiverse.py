@@ -42,9 +42,9 @@ def multiverse(
     quick: Quick = False,
     debug: Debug = False,
 ) -> int:
-    """Live every reading of the paper, and say which of them its claims need.
+    """Run every reading of the paper, and report which of them its claims need.
 
-    A directory that is finished is analysed again; one that is not is gone on with.
+    A finished directory is analysed again; an unfinished one is resumed.
     """
     from animat.experiments.multiverse import InterruptedStudyError, Size, run_multiverse
     from animat.experiments.multiverse_designs import of_size
@@ -73,7 +73,7 @@ def multiverse(
                 found, directory, command, lambda: tell("Figures and page", 1, len(FIGURES) + 1)
             )
     except InterruptedStudyError as error:
-        print(f"animat: interrupted; the same command goes on with {error}", file=sys.stderr)
+        print(f"animat: interrupted; the same command resumes {error}", file=sys.stderr)
         return INTERRUPTED
     _print(found)
     print(f"{time.monotonic() - started:.0f} s; open {directory / 'report.html'}")

@@ -83,7 +83,7 @@ def _shown(recording: Recording) -> list[str]:
 
 def _told(found: Difference) -> list[str]:
     """Return in lines where a life parts from its recording."""
-    rows = [("", "recorded", "lived again"), *found.fields]
+    rows = [("", "recorded", "simulated again"), *found.fields]
     widths = [max(len(row[column]) for row in rows) for column in range(2)]
     return [
         f"another life: step {found.step:,} is the first that differs",

@@ -74,7 +74,7 @@ def kept_told(directory: Path) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        kept = f"what is finished is kept in {directory}; the same command goes on with it"
+        kept = f"finished work is stored in {directory}; the same command resumes it"
         print(f"animat: {kept}", file=sys.stderr)
         raise
 

@@ -30,7 +30,7 @@ def run(
         str | None,
         typer.Option(
             metavar="WHERE",
-            help="Live on a cluster: tcp://HOST:PORT of a Dask scheduler, or slurm, pbs, ...",
+            help="Run on a cluster: tcp://HOST:PORT of a Dask scheduler, or slurm, pbs, ...",
         ),
     ] = None,
     jobs: Annotated[
@@ -40,7 +40,7 @@ def run(
     check_functions: CheckFunctions = False,
     debug: Debug = False,
 ) -> int:
-    """Live the lives of a study, or those that its results directory still lacks."""
+    """Run a study, or resume one: simulate the lives that its results directory lacks."""
     from animat.files.settings import SettingsError
     from animat.progress import telling
     from animat.study.execute.run import run as live
@@ -95,8 +95,8 @@ def _say_how_it_ended(outcome: Outcome, directory: Path) -> int:
     total = outcome.tally.numbering["lives"].total
     if not outcome.complete:
         print(
-            f"animat: {lives.rows:,} of {total:,} lives are in {directory}; the same command goes"
-            " on with the others",
+            f"animat: {lives.rows:,} of {total:,} lives are in {directory}; the same command"
+            " resumes the run",
             file=sys.stderr,
         )
         return INTERRUPTED

@@ -39,7 +39,7 @@ def sensitivity(
     with telling() as tell, workers_of(threads) as workers:
         outcome = run(Plan(asked), directory, workers, tell)
     if not outcome.complete:
-        print(f"animat: the same command goes on with {directory}", file=sys.stderr)
+        print(f"animat: the same command resumes {directory}", file=sys.stderr)
         return INTERRUPTED
     found = indices_of(open_results(directory))
     publish(found, directory, str(provenance()["command"]))

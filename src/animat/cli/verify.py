@@ -10,7 +10,7 @@ from animat.cli.options import Debug, ResultsDirectory
 
 @app.command()
 def verify(directory: ResultsDirectory, debug: Debug = False) -> int:
-    """Read all results of a study again, live some of its lives again, and say what differs."""
+    """Read all results of a study, simulate some of its lives again, and report differences."""
     from animat.progress import telling
     from animat.study.execute.verify import verify as look
     from animat.study.store.results import open as open_results
@@ -24,6 +24,6 @@ def verify(directory: ResultsDirectory, debug: Debug = False) -> int:
         return FAILED
     print(
         f"{found.parts:,} of {found.all_parts:,} parts are there and unchanged;"
-        f" {found.lives:,} lives lived again are the same"
+        f" {found.lives:,} lives simulated again are the same"
     )
     return DONE
