@@ -69,10 +69,10 @@ def test_the_page_stands_alone_and_shows_it_all(published):
 def test_the_lead_counts_the_verdicts(published):
     page = (published.directory / "report.html").read_text("utf-8")
     verdicts = [claim.verdict for claim in published.result.claims]
-    assert (
-        f"{verdicts.count('holds')} hold, {verdicts.count('fails')} fail,"
-        f" {verdicts.count('undecided')} are undecided"
-    ) in page
+    held, failed, undecided = (verdicts.count(each) for each in ("holds", "fails", "undecided"))
+    hold, fail = "holds" if held == 1 else "hold", "fails" if failed == 1 else "fail"
+    are = "is" if undecided == 1 else "are"
+    assert f"{held} {hold}, {failed} {fail}, and {undecided} {are} undecided" in page
     assert "4 robots that learn, then 24 lives in each of the four cells, up to 3,000 steps" in page
 
 
