@@ -287,3 +287,16 @@ def test_checked_functions_are_found_where_the_trial_before_a_life_cannot(
     assert end.value.code == 1
     (line,) = [one for one in capsys.readouterr().err.splitlines() if one.startswith("animat: ")]
     assert "wander: late raised IndexError: index is out of bounds, in step " in line
+
+
+def test_what_a_custom_estimator_says_is_told_and_nothing_else():
+    """At the end of a life that learns, of every object type."""
+
+    def sure(features, weights, hidden):
+        return 0.25
+
+    mind = Mind(agent="LEARNING", learning={"estimator": sure})
+    lines = story(live(mind, World.abundant(), steps=300))
+    affords = [line for line in lines if " affords " in line]
+    assert len(affords) == 4
+    assert all(line.count("0.25") == 3 for line in affords)

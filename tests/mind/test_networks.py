@@ -171,3 +171,10 @@ def test_what_other_features_make_likely_is_drawn_as_bars():
     heights = [bar.get_height() for bar in known.figure(kinds).axes[0].patches]  # pyright: ignore
     assert heights == [known.likelihoods(each)["eat"] for each in kinds.values()]
     assert known.figure().axes
+
+
+def test_networks_of_a_custom_estimator_do_not_say_what_another_would():
+    known = Networks(("eat",), ("shape", "size"), 2, np.zeros((1, 9)), custom=True)
+    for ask in (known.figure, lambda: known.likelihoods({"shape": 1.0, "size": 0.0})):
+        with pytest.raises(SettingsError, match="custom estimator"):
+            ask()

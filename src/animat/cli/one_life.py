@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import pyarrow as pa
 
 from animat.files.arguments import callback, file
@@ -18,6 +19,7 @@ from animat.files.provenance import provenance
 from animat.files.settings import SettingsError
 from animat.files.tables import write_tables
 from animat.life.life import Life, Moment, Progress, TraceChoice, birth, check, drawn, live, lived
+from animat.life.likelihoods import likelihoods
 from animat.life.scenario import LifeError, bring_together, checked_parameters
 from animat.life.trace import table
 from animat.mind.mind import Mind
@@ -160,11 +162,11 @@ def story(life: Life) -> list[str]:
         + f"; mean drive {told['mean_drive']:.3f}",
     ]
     if life.mind.nature.learns:
-        for kind in life.world.types:
-            said = life.networks.likelihoods(kind.features)
+        (said,) = likelihoods(life.setting, np.array([life.state], life.state.dtype))
+        for t, kind in enumerate(life.world.types):
+            each = zip(life.mind.behaviours, said[:, t], strict=True)
             lines.append(
-                f"{kind.name} affords "
-                + ", ".join(f"{name} {value:.2f}" for name, value in said.items())
+                f"{kind.name} affords " + ", ".join(f"{name} {value:.2f}" for name, value in each)
             )
     return lines
 

@@ -21,6 +21,7 @@ from animat.life.kernels import advance_recorded
 from animat.life.scenario import LifeError, Setting, bring_together
 from animat.life.summary import death_of, summary
 from animat.life.trace import ROW, table
+from animat.mind.affordance import ESTIMATORS
 from animat.mind.mind import Mind
 from animat.mind.networks import Networks
 from animat.numerics.layout import raw
@@ -94,6 +95,7 @@ class Life:
             self.world.feature_names,
             self.mind.learning.hidden_units,
             np.array(self.state.weights),
+            self.mind.learning.estimator not in ESTIMATORS,
         )
 
     def to_pandas(self) -> pd.DataFrame:

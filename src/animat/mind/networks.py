@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from animat.files import arguments
-from animat.files.arguments import instance, real, reals, sequence, whole
+from animat.files.arguments import boolean, instance, real, reals, sequence, whole
 from animat.files.settings import SettingsError, nearest
 from animat.files.validation_errors import plain
 from animat.mind.affordance import feed_forward, weight_count
@@ -31,7 +31,8 @@ class Networks:
     """The trained networks of one robot.
 
     `weights` [B, W], a row for each of `behaviours`; `features`, the names of the F inputs;
-    `hidden`, the number of hidden units H. The weights are copied and cannot be changed. Raises
+    `hidden`, the number of hidden units H; `custom`, whether they were learnt for a custom
+    estimator, which alone can tell what they say. The weights are copied and cannot be changed. Raises
     SettingsError where there are not as many weights as the names ask for, or one is not finite.
     """
 
@@ -39,6 +40,7 @@ class Networks:
     features: tuple[str, ...]
     hidden: int
     weights: NDArray[np.float64]
+    custom: bool = False
 
     def __post_init__(self) -> None:
         """Take a copy of the weights, and check that they fit."""
@@ -58,6 +60,7 @@ class Networks:
             ("features", features),
             ("hidden", hidden),
             ("weights", weights),
+            ("custom", boolean("custom", self.custom)),
         ):
             object.__setattr__(self, name, value)
 
@@ -75,11 +78,13 @@ class Networks:
     def likelihoods(self, features: dict[str, float]) -> dict[str, float]:
         """Return for each behaviour how likely an object with these features is to afford it.
 
-        Raises SettingsError where the features are not those the networks know.
+        Raises SettingsError where the features are not those the networks know, and for networks of
+        a custom estimator.
 
         >>> life.networks.likelihoods({"shape": 1.0, "size": 0.0})  # doctest: +SKIP
         {'eat': 0.97, 'shelter': 0.02, 'interact': 0.99}
         """
+        self._check_built_in()
         for name in instance("features", features, Mapping):
             if name not in self.features:
                 raise SettingsError(
@@ -118,8 +123,9 @@ class Networks:
         Networks of two features are drawn as a surface over both, others as a bar for each object.
         `objects` are the features of object types by their names, such as
         `{kind.name: kind.features for kind in world.types}`. Raises SettingsError where these are
-        not the features the networks know.
+        not the features the networks know, and for networks of a custom estimator.
         """
+        self._check_built_in()
         from animat.figures.networks import SURFACE, networks_figure
 
         named = instance("objects", {} if objects is None else objects, Mapping)
@@ -133,6 +139,13 @@ class Networks:
             self._surface(SURFACE) if len(self.features) == 2 else None,
             dict(zip(named, zip(places, said, strict=True), strict=True)),
         )
+
+    def _check_built_in(self) -> None:
+        if self.custom:
+            raise SettingsError(
+                "these networks were learnt for a custom estimator, and only that can tell what"
+                " they say; lives and studies ask it: likelihood_* of traces and of tables of lives"
+            )
 
     def _surface(self, along: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the likelihoods [B, N, N] at N values of the second and of the first feature."""
