@@ -32,8 +32,9 @@ class Networks:
 
     `weights` [B, W], a row for each of `behaviours`; `features`, the names of the F inputs;
     `hidden`, the number of hidden units H; `custom`, whether they were learnt for a custom
-    estimator, which alone can tell what they say. The weights are copied and cannot be changed. Raises
-    SettingsError where there are not as many weights as the names ask for, or one is not finite.
+    estimator, which alone can tell what they say. The weights are copied and cannot be changed.
+    Raises SettingsError where there are not as many weights as the names ask for, or one is not
+    finite.
     """
 
     behaviours: tuple[str, ...]
