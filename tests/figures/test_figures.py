@@ -199,7 +199,9 @@ def test_the_users_own_settings_neither_show_nor_change(drawings, monkeypatch):
 
 def test_a_life_of_one_step_can_be_drawn(trace):
     row = trace(50).slice(0, 1)
-    style.png(life_figure(row, **MIND), dpi=50)
+    fig = life_figure(row, **MIND)
+    assert style.png(fig, dpi=50).startswith(b"\x89PNG")
+    assert any(line.get_xdata().size for ax in fig.axes for line in ax.lines)
 
 
 def test_a_long_life_does_not_make_a_heavy_picture(trace, world):
