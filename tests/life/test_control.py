@@ -199,3 +199,18 @@ def test_what_a_kernel_would_misread_is_refused(world):
     with pytest.raises(LifeError, match="motors: must be"):
         command(*life, np.zeros((2, number), np.int64).T, whole)
     assert life[3].tobytes() == before.tobytes()
+
+
+def test_a_step_that_waits_for_a_choice_is_not_begun_again(world):
+    setting = bring_together(Mind(), world)
+    here = setting, SEED, LIVES, *setting.begin(SEED, LIVES)
+    due = advance_to_choice(*here, STEPS)
+    some = due.copy()
+    some[int(np.flatnonzero(due)[-1])] = 0
+    take_choice(*here, np.zeros(len(LIVES), np.int64), some)
+    for call in (
+        lambda: advance_to_choice(*here, STEPS),
+        lambda: command(*here, np.zeros((len(LIVES), 2), np.int64), np.full(len(LIVES), -1)),
+    ):
+        with pytest.raises(LifeError, match=r"states: row \d+ waits for its choice"):
+            call()

@@ -22,6 +22,7 @@ ROLES = {
     "number": Role((types.float64,), types.float64),
     "pair": Role((types.int64,), types.UniTuple(types.float64, 2)),
     "fill": Role((REALS, types.float64), types.none),
+    "other": Role((types.float64,), types.float64),
 }
 
 
@@ -29,6 +30,7 @@ class Functions(NamedTuple):
     number: Any
     pair: Any
     fill: Any
+    other: Any
 
 
 class Counts(NamedTuple):
@@ -50,7 +52,7 @@ def no_fill(out, x):
     pass
 
 
-IDLE = Functions(no_number, no_pair, no_fill)
+IDLE = Functions(no_number, no_pair, no_fill, no_number)
 SLOTS = Functions(**{name: slot(name, role) for name, role in ROLES.items()})
 
 
@@ -58,7 +60,8 @@ SLOTS = Functions(**{name: slot(name, role) for name, role in ROLES.items()})
 def kernel(out, x, n, functions):
     functions.fill(out, x)
     first, second = functions.pair(n)
-    return functions.number(x) + 10.0 * first + 100.0 * second + (0.5 if any_custom() else 0.0)
+    number = functions.number(x) + 1000.0 * functions.other(x)
+    return number + 10.0 * first + 100.0 * second + (0.5 if any_custom() else 0.0)
 
 
 def asked(x=2.0, n=3, **functions: Any) -> tuple[float, list[float]]:
@@ -93,6 +96,13 @@ def test_each_kernel_has_its_own_functions_however_many_there_are():
     assert asked(number=times) == (10.5, [0.0, 0.0])
     assert asked(number=times, fill=fill) == (10.5, [0.0, 2.0])
     assert asked(number=plus) == first == (3.5, [0.0, 0.0])
+
+
+def test_one_function_may_fill_two_slots():
+    def half(x):
+        return x / 2.0
+
+    assert asked(number=half, other=half) == (1001.5, [0.0, 0.0])
 
 
 def test_what_a_function_raises_leaves_the_kernel_and_stops_it():

@@ -92,6 +92,7 @@ def born(
     states["death_variable"] = -1
     states["death_side"] = -1
     states["site"] = NO_SITE
+    states["met"] = NO_SITE
     states["likelihoods"] = np.nan
     states["abandoned"] = NO_SITE
     if weights is not None:

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from animat.files.arguments import MOST_63, MOST_64, instance, whole
 from animat.life import kernels
 from animat.life.scenario import LifeError, Setting
-from animat.life.state import state_dtype
+from animat.life.state import NO_SITE, state_dtype
 from animat.numerics.layout import raw
 
 
@@ -38,7 +38,9 @@ def advance_to_choice(
     Returns `due` [L], 1 for a life that waits for its choice and 0 for one that has ended. Raises
     LifeError for what is not as described.
     """
-    seed, until = _checked(setting, seed, lives, states, present), _steps(until)
+    seed = _checked(setting, seed, lives, states, present)
+    until = whole("until", until, 0, MOST_63, LifeError)
+    _none_waits(states)
     due = np.zeros(len(lives), np.uint8)
     call = kernels.advance_to_choice.of(setting.counts, setting.functions)
     call(raw(states), present, lives, *setting.constants, seed, until, due)
@@ -83,6 +85,7 @@ def command(
     are cut to that. Raises LifeError for arrays that are not as described.
     """
     seed = _checked(setting, seed, lives, states, present)
+    _none_waits(states)
     _array("motors", motors, np.int64, (len(lives), 2))
     _array("acts", acts, np.int64, (len(lives),))
     call = kernels.command.of(setting.counts, setting.functions)
@@ -125,17 +128,18 @@ def _checked(
     return whole("seed", seed, 0, MOST_64, LifeError)
 
 
+def _none_waits(states: NDArray[np.void]) -> None:
+    """Raise LifeError where a life is inside a step, which would be simulated twice."""
+    waiting = np.flatnonzero((states["met"] != NO_SITE) & ~states["dead"])
+    if len(waiting):
+        raise LifeError(f"states: row {waiting[0]} waits for its choice; take_choice comes first")
+
+
 def _array(name: str, value: Any, dtype: Any, shape: tuple[int, ...] | None) -> None:
     good = isinstance(value, np.ndarray) and value.dtype == dtype and value.flags.c_contiguous
     if good and (value.ndim == 1 if shape is None else value.shape == shape):
         return
-    said = "of states of this setting" if dtype not in WORDS else f"of {WORDS[dtype]}"
+    fields = np.dtype(dtype).names
+    said = f"of {np.dtype(dtype)}" if fields is None else "of states of this setting"
     length = "" if shape is None else f" and of shape {list(shape)}"
     raise LifeError(f"{name}: must be a contiguous NumPy array {said}{length}")
-
-
-WORDS = {np.uint64: "uint64", np.uint8: "uint8", np.int64: "int64"}
-
-
-def _steps(until: int) -> int:
-    return whole("until", until, 0, MOST_63, LifeError)

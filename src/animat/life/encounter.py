@@ -56,6 +56,7 @@ def choose(state, model, key):
 def commit(state, mind, chosen):
     """Take on the object met with the behaviour chosen, or disregard it if that seems in vain."""
     if chosen < 0 or chosen >= len(mind.serves):
+        state.met = NO_SITE
         if chosen != -1:
             failure.fail(state, failure.SELECTOR, float(chosen), 0.0)
         return
@@ -74,6 +75,7 @@ def encounter(state):
     state.event |= ENCOUNTERED
     state.encounters += 1
     state.site = state.met
+    state.met = NO_SITE
 
 
 @compiled

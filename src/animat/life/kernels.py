@@ -103,7 +103,7 @@ def advance_recorded(
 def advance_to_choice(states, present, lives, minds, robots, raster, seed, until, due, functions):
     """Advance each of L lives as `advance` does, but no farther than to a choice of behaviour.
 
-    `due` [L] tells which of them are due: each of these is inside a step, which `choose` ends.
+    `due` [L] tells which of them are due: each of these is inside a step, which `take_choice` ends.
     """
     model = Model(mind_at(minds, 0), robot_at(robots, 0), functions)
     for n in range(len(lives)):

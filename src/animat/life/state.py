@@ -63,7 +63,7 @@ STATE = Layout(
         Field("mode_steps", WHOLE),
         Field("behaviour", WHOLE),
         Field("site", WHOLE),
-        Field("met", WHOLE),  # the object met in this step, before a behaviour is chosen
+        Field("met", WHOLE),  # the object met, until a behaviour is chosen
         Field("abandoned", WHOLE, (ABANDONED,)),
         Field("memory", REAL, (4,)),  # of the wander controller
         Field("choice_memory", REAL, (4,)),  # of the selector

@@ -143,7 +143,7 @@ class Linked:
             table = self._layouts[symbol].table(counts)
             words = ", ".join(f"i64 {word}" for word in table)
             _define(module, symbol, f"[{len(table)} x i64] [{words}]")
-        custom = any(one not in self._idle for one in functions)
+        custom = any(getattr(functions, role) not in self._idle for role in template.roles)
         _define(module, CUSTOM, f"i8 {int(custom)}")
         for role in template.roles:
             module.get_function(SLOT + role).linkage = "internal"
@@ -223,12 +223,13 @@ def _define(module: binding.ModuleRef, symbol: str, value: str) -> None:
     module.get_global_variable(symbol).linkage = "internal"
 
 
-_FILLINGS: WeakKeyDictionary[Any, bytes] = WeakKeyDictionary()
+_FILLINGS: WeakKeyDictionary[Any, dict[str, bytes]] = WeakKeyDictionary()
 
 
 def _filling(name: str, role: Role, function: Any) -> binding.ModuleRef:
     """Return a module that fills the slot of a role: a function, its result cast to the role's."""
-    if function not in _FILLINGS:
+    known = _FILLINGS.setdefault(function, {})
+    if name not in known:
         fill = with_arguments("{}", "function({})", len(role.arguments), function=function)
         dispatcher = inlined(fill, **OPTIONS)
         dispatcher.compile(signature(role.result, *role.arguments))
@@ -237,8 +238,8 @@ def _filling(name: str, role: Role, function: Any) -> binding.ModuleRef:
         filling = module.get_function(overload.fndesc.llvm_func_name)
         filling.name = SLOT + name
         filling.linkage = "external"
-        _FILLINGS[function] = module.as_bitcode()
-    return binding.parse_bitcode(_FILLINGS[function])
+        known[name] = module.as_bitcode()
+    return binding.parse_bitcode(known[name])
 
 
 def _callable(library: Any, names: Names, function: Callable[..., Any]) -> Callable[..., Any]:
